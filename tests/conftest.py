@@ -1,0 +1,24 @@
+"""What all tests share: where the real logs are, and what a skip means on the machine that must not skip."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+REAL_DATA = ROOT.parent / "shared" / "data"
+
+
+def missing(what: str) -> None:
+    """Skips for a missing part, or fails where ``GUIDANCE_ALL_TESTS`` says that every part must be there."""
+    if os.environ.get("GUIDANCE_ALL_TESTS"):
+        pytest.fail(f"{what}, and GUIDANCE_ALL_TESTS forbids skipping")
+    pytest.skip(what)
+
+
+@pytest.fixture(scope="session")
+def real_data() -> Path:
+    """The folder of real receiver logs and field polygons that lies beside the checkout."""
+    if not REAL_DATA.is_dir():
+        missing(f"the real logs are not beside the project ({REAL_DATA})")
+    return REAL_DATA
