@@ -156,7 +156,7 @@ class NoFix:
 
 @dataclass(frozen=True, slots=True)
 class Rejected:
-    """A line or an epoch that was not believed, and why. ``reason`` is one of few phrases, so that it can be counted."""
+    """A line or an epoch that was not believed, and why. ``reason`` is one of few phrases, to be counted."""
 
     arrival: float
     line: str
@@ -331,7 +331,7 @@ class PlanCosts:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """An operation's passes in driving order. ``mainland`` holds rings of shape (N, 2), outer first, one list a part."""
+    """An operation's passes in driving order. ``mainland`` holds rings of shape (N, 2), outer first, a tuple a part."""
 
     method: str
     direction: float
