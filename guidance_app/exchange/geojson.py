@@ -1,0 +1,241 @@
+"""GeoJSON (RFC 7946, and the older form of 2008 whose ``crs`` member is honoured) to drafts, and fields to GeoJSON.
+
+Each feature with a polygon is a field of its own; the parts of a MultiPolygon are parts of one field. Lines and points
+belong to a field only in files that this program wrote, where the property ``guidance_app`` says what they are.
+"""
+
+import json
+from collections.abc import Callable, Sequence
+from typing import Any, NoReturn
+
+from pydantic import ValidationError
+from pyproj import CRS, Transformer
+from pyproj.exceptions import CRSError, ProjError
+
+from guidance_app.boundary import BoundaryError, FieldDraft, PolygonRings
+from guidance_app.documents import FieldDocument, GuidanceLineDocument, LineGeometry, Position
+
+__all__ = ["read_drafts", "written_field"]
+
+ROLE = "guidance_app"
+NAME_PROPERTIES = ("name", "Name", "NAME", "field_name", "FieldName", "label", "title", "id")
+"""Where a field's name is looked for, first come first served; ``id`` at last."""
+ACCURACY = 1.0
+"""Metres; a change of datum that is less accurate is refused (Tokyo without its grid is silently up to 15 m off)."""
+
+Place = Callable[[float, float], Position]
+
+
+def read_drafts(content: bytes) -> tuple[FieldDraft, ...]:
+    """A draft for each feature with a polygon. Raises ``BoundaryError``."""
+    root = _object(content)
+    place = _place_of(root)
+    features = _features(root)
+    fields = [feature for feature in features if _kind_of(feature) in {"Polygon", "MultiPolygon"}]
+    others = [feature for feature in features if _kind_of(feature) not in {"Polygon", "MultiPolygon", None}]
+    if not fields:
+        found = sorted({str(_kind_of(feature)) for feature in others})
+        msg = "there is no polygon in it" + (f", only {', '.join(found)}" if found else "")
+        raise BoundaryError(msg)
+    ours = [feature for feature in others if ROLE in _properties(feature)]
+    drafts = [_draft(feature, place) for feature in fields]
+    if len(drafts) == 1 and ours:
+        drafts = [_with_extras(drafts[0], ours, place)]
+    ignored = len(others) - (len(ours) if len(drafts) == 1 else 0)
+    if ignored:
+        remark = f"{ignored} points and lines in the file are left out"
+        drafts = [_remarked(draft, remark) for draft in drafts]
+    return tuple(drafts)
+
+
+def written_field(document: FieldDocument) -> bytes:
+    """The field as a FeatureCollection: the boundary, and if there are any its guidance lines and its entrance."""
+    features = [
+        _feature("boundary", document.boundary.model_dump(), {"name": document.name, "notes": document.notes}),
+        *(
+            _feature("line", line.geometry.model_dump(), {"name": line.name, "type": line.type})
+            for line in document.lines
+        ),
+    ]
+    if document.entrance is not None:
+        features.append(_feature("entrance", {"type": "Point", "coordinates": document.entrance}, {}))
+    collection = {"type": "FeatureCollection", "features": features}
+    return (json.dumps(collection, ensure_ascii=False, indent=1) + "\n").encode()
+
+
+def _feature(role: str, geometry: dict[str, Any], properties: dict[str, Any]) -> dict[str, Any]:
+    return {"type": "Feature", "properties": {ROLE: role, **properties}, "geometry": geometry}
+
+
+# --- reading: the frame of the file ----------------------------------------------------------------------------------
+
+
+def _object(content: bytes) -> dict[str, Any]:
+    try:
+        root = json.loads(content, parse_constant=_no_constant)
+    except BoundaryError:
+        raise
+    except RecursionError as error:
+        msg = "it is nested too deeply to be GeoJSON"
+        raise BoundaryError(msg) from error
+    except ValueError as error:
+        msg = f"it is not JSON ({error})"
+        raise BoundaryError(msg) from error
+    if not isinstance(root, dict):
+        msg = "it is JSON, but not a GeoJSON object"
+        raise BoundaryError(msg)
+    return root
+
+
+def _no_constant(text: str) -> NoReturn:
+    msg = f"it holds {text} where a number belongs"
+    raise BoundaryError(msg)
+
+
+def _features(root: dict[str, Any]) -> list[dict[str, Any]]:
+    """Every feature; a bare geometry counts as one."""
+    kind = root.get("type")
+    if kind == "FeatureCollection":
+        features = root.get("features")
+        if not isinstance(features, list) or not all(isinstance(each, dict) for each in features):
+            msg = "its FeatureCollection has no list of features"
+            raise BoundaryError(msg)
+        return features
+    if kind == "Feature":
+        return [root]
+    if kind in {"Polygon", "MultiPolygon"}:
+        return [{"type": "Feature", "properties": {}, "geometry": root}]
+    msg = f"it is JSON, but not GeoJSON with a polygon (its type is {kind!r})"
+    raise BoundaryError(msg)
+
+
+def _place_of(root: dict[str, Any]) -> Place:
+    """What turns a position of the file into WGS 84 degrees, from the ``crs`` member of 2008."""
+    crs = root.get("crs")
+    if crs is None:
+        return lambda x, y: (x, y)
+    properties = crs.get("properties") if isinstance(crs, dict) else None
+    name = properties.get("name") if isinstance(properties, dict) else None
+    if not isinstance(name, str):
+        msg = "its crs member does not name a coordinate system"
+        raise BoundaryError(msg)
+    try:
+        system = CRS.from_user_input(name)
+        transformer = Transformer.from_crs(system, "EPSG:4326", always_xy=True, accuracy=ACCURACY, allow_ballpark=False)
+    except CRSError as error:
+        msg = f"its coordinate system '{name}' is not known"
+        raise BoundaryError(msg) from error
+    except ProjError as error:
+        msg = f"its coordinate system '{name}' cannot be turned into WGS 84 within {ACCURACY:g} m here"
+        raise BoundaryError(msg) from error
+
+    def place(x: float, y: float) -> Position:
+        longitude, latitude = transformer.transform(x, y)
+        return float(longitude), float(latitude)
+
+    return place
+
+
+# --- reading: one feature --------------------------------------------------------------------------------------------
+
+
+def _kind_of(feature: dict[str, Any]) -> str | None:
+    geometry = feature.get("geometry")
+    kind = geometry.get("type") if isinstance(geometry, dict) else None
+    return kind if isinstance(kind, str) else None
+
+
+def _properties(feature: dict[str, Any]) -> dict[str, Any]:
+    properties = feature.get("properties")
+    return properties if isinstance(properties, dict) else {}
+
+
+def _draft(feature: dict[str, Any], place: Place) -> FieldDraft:
+    coordinates = feature["geometry"].get("coordinates")
+    polygons = coordinates if _kind_of(feature) == "MultiPolygon" else [coordinates]
+    if not isinstance(polygons, list) or not polygons:
+        msg = "a polygon in it has no coordinates"
+        raise BoundaryError(msg)
+    notes = _properties(feature).get("notes")
+    return FieldDraft(
+        name=_name_of(feature),
+        parts=tuple(_polygon(polygon, place) for polygon in polygons),
+        notes=notes if isinstance(notes, str) and ROLE in _properties(feature) else "",
+    )
+
+
+def _name_of(feature: dict[str, Any]) -> str | None:
+    properties = _properties(feature)
+    for key in NAME_PROPERTIES:
+        value = properties.get(key)
+        if isinstance(value, str | int) and not isinstance(value, bool) and str(value).strip():
+            printable = "".join(letter if letter.isprintable() else " " for letter in str(value))
+            return " ".join(printable.split())[:120] or None
+    return None
+
+
+def _polygon(rings: Any, place: Place) -> PolygonRings:
+    if not isinstance(rings, list) or not rings:
+        msg = "a polygon in it has no rings"
+        raise BoundaryError(msg)
+    return [_positions(ring, place) for ring in rings]
+
+
+def _positions(ring: Any, place: Place) -> list[Position]:
+    if not isinstance(ring, list) or not ring:
+        msg = "a ring in it has no corners"
+        raise BoundaryError(msg)
+    return [_position(corner, place) for corner in ring]
+
+
+def _position(corner: Any, place: Place) -> Position:
+    if not isinstance(corner, list) or len(corner) < 2 or not all(_is_number(value) for value in corner[:2]):
+        msg = f"a corner in it is {str(corner)[:40]!r}, not two numbers"
+        raise BoundaryError(msg)
+    try:
+        return place(float(corner[0]), float(corner[1]))
+    except OverflowError as error:
+        msg = "a corner in it is not a number of sensible size"
+        raise BoundaryError(msg) from error
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+# --- reading: what this program wrote beside the boundary ------------------------------------------------------------
+
+
+def _with_extras(draft: FieldDraft, features: Sequence[dict[str, Any]], place: Place) -> FieldDraft:
+    lines: list[GuidanceLineDocument] = []
+    entrance: Position | None = None
+    for feature in features:
+        coordinates = feature["geometry"].get("coordinates")
+        match _properties(feature)[ROLE]:
+            case "line":
+                lines.append(_line(feature, _positions(coordinates, place)))
+            case "entrance":
+                entrance = _position(coordinates, place)
+            case other:
+                msg = f"a feature in it has the unknown part '{other}' of a field"
+                raise BoundaryError(msg)
+    return FieldDraft(draft.name, draft.parts, tuple(lines), entrance, draft.notes, draft.remarks)
+
+
+def _line(feature: dict[str, Any], positions: list[Position]) -> GuidanceLineDocument:
+    properties = _properties(feature)
+    try:
+        return GuidanceLineDocument.model_validate(
+            {
+                "name": properties.get("name"),
+                "type": properties.get("type", "ab"),
+                "geometry": LineGeometry(coordinates=positions),
+            }
+        )
+    except ValidationError as error:
+        msg = f"a guidance line in it cannot be read: {error.errors()[0]['msg']}"
+        raise BoundaryError(msg) from error
+
+
+def _remarked(draft: FieldDraft, remark: str) -> FieldDraft:
+    return FieldDraft(draft.name, draft.parts, draft.lines, draft.entrance, draft.notes, (*draft.remarks, remark))
