@@ -175,7 +175,8 @@ class Measurement:
 
     ``east``, ``north`` is the antenna's position; ``antenna`` its lever arm (forward, right, height) seen from the
     reference point, already turned by roll and pitch. ``cell`` is (east, north) here: the frame's own order.
-    ``yaw_rate`` is the gyro's, positive clockwise.
+    ``yaw_rate`` is the gyro's, positive clockwise. ``heading_sigma`` is how far ``heading`` may drift; None is a dual
+    antenna's, which does not.
     """
 
     t: float
@@ -192,6 +193,7 @@ class Measurement:
     roll: float | None = None
     pitch: float | None = None
     antenna: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    heading_sigma: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
