@@ -1,0 +1,65 @@
+"""Where bytes come from. One source a file; a URI picks it: ``file:run.nmea``, ``sim:``.
+
+A source only reads. It says what it opened (``SourceUp``), gives the bytes with their times (``Chunk``), and says why
+it ended (``SourceDown``); it never raises once it is open. A source that is not ``live`` gives its chunks as fast as
+they are taken, each with the time at which it belongs; ``pacing`` is the one place that waits, and ``open_source``
+puts it in front of such a source. Opening raises ``SourceError`` with a sentence for the person at the screen.
+"""
+
+import importlib
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from typing import Protocol, cast
+
+from guidance_app.model import Chunk, SourceDown, SourceUp
+
+__all__ = ["SOURCES", "Opener", "Source", "SourceError", "SourceEvent", "open_source"]
+
+SourceEvent = Chunk | SourceUp | SourceDown
+
+
+class SourceError(Exception):
+    """What cannot be read and what to do about it, in one sentence for the person at the screen."""
+
+
+class Source(Protocol):
+    """Something to read a receiver's bytes from. ``duration`` in seconds is None when nobody knows the end.
+
+    ``live`` says who keeps the time: a live source gives bytes when they come, another gives them at once and leaves
+    the waiting to ``pacing``.
+    """
+
+    description: str
+    duration: float | None
+    live: bool
+
+    def events(self, stop: threading.Event) -> Iterator[SourceEvent]:
+        """From ``SourceUp`` to ``SourceDown``, or until ``stop`` is set."""
+        ...
+
+
+Opener = Callable[[str], Source]
+
+SOURCES: Mapping[str, str] = {
+    "file": "guidance_app.sources.file:open_file",
+    "sim": "guidance_app.sources.simulated:open_simulated",
+}
+"""URI scheme -> opener, as ``module:function``. Named, not imported: a source's own libraries load when it is used."""
+
+
+def open_source(uri: str) -> Source:
+    """The source that ``uri`` names, keeping its time by itself. Raises ``SourceError``."""
+    scheme = uri.partition(":")[0].lower()
+    if ":" not in uri or scheme not in SOURCES:
+        known = ", ".join(f"{name}:" for name in SOURCES)
+        msg = f"'{uri}' is not a source that is known here: write it with one of {known} in front, as in file:run.nmea."
+        raise SourceError(msg)
+    source = cast("Opener", _named(SOURCES[scheme]))(uri)
+    if source.live:
+        return source
+    return cast("Callable[[Source], Source]", _named("guidance_app.sources.pacing:Paced"))(source)
+
+
+def _named(place: str) -> object:
+    module, _, name = place.partition(":")
+    return getattr(importlib.import_module(module), name)
