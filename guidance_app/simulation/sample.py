@@ -1,0 +1,99 @@
+"""The invented farm of the embedded sample: a field, a tractor, an implement, a receiver and an operation.
+
+Nothing of it belongs to anybody. The field is made so that a round trip with the 6 m implement has eight passes.
+"""
+
+import math
+
+from guidance_app.angles import east_north
+from guidance_app.boundary import checked_boundary
+from guidance_app.documents import (
+    Direction,
+    FieldDocument,
+    Implement,
+    Job,
+    Method,
+    Operation,
+    Position,
+    Receiver,
+    Tractor,
+)
+from guidance_app.geodesy import FieldFrame
+
+__all__ = ["sample_job"]
+
+CORNER_DEG = (41.930, -4.870)
+"""Latitude and longitude of the field's south-western corner."""
+
+EDGE_HEADING = math.radians(24.0)
+"""Of the long edges."""
+
+OUTER = ((0, 0), (118, 1.6), (296, 0), (304, 30), (299, 71.5), (152, 72), (8, 70.5), (3, 34))
+"""Corners in metres: along the long edge, and to its right."""
+
+TREES = ((286, 57), (290, 55.5), (293.5, 58), (293, 62.5), (288.5, 63.5), (285.5, 61))
+"""A group of trees near the far end."""
+
+ENTRANCE = (4.0, 10.0)
+
+
+def sample_job() -> Job:
+    """The sample's documents."""
+    return Job(tractor=_tractor(), implement=_implement(), receiver=_receiver(), field=_field(), operation=_operation())
+
+
+def _tractor() -> Tractor:
+    return Tractor(
+        name="Sample tractor",
+        wheelbase=2.45,
+        track_width=1.8,
+        antenna_forward=0.3,
+        antenna_height=2.6,
+        turning_radius=5.0,
+    )
+
+
+def _implement() -> Implement:
+    return Implement(name="Sample implement", working_width=6.0, overlap=0.0, offset_back=1.8, length=1.6, sections=4)
+
+
+def _receiver() -> Receiver:
+    return Receiver(name="Sample receiver", source="sim:")
+
+
+def _field() -> FieldDocument:
+    return FieldDocument(
+        name="Sample field",
+        boundary=checked_boundary([_ring(OUTER), _ring(TREES)]).geometry,
+        entrance=_position(*ENTRANCE),
+        notes="An invented field for the demonstration.",
+    )
+
+
+def _operation() -> Operation:
+    return Operation(
+        name="Round trip",
+        field="Sample field",
+        tractor="Sample tractor",
+        implement="Sample implement",
+        receiver="Sample receiver",
+        method=Method.ROUND_TRIP,
+        direction=Direction.LONGEST_EDGE,
+        turning_space=12.0,
+        product="Harrowing",
+    )
+
+
+def _ring(corners: tuple[tuple[float, float], ...]) -> list[Position]:
+    ring = [_position(along, right) for along, right in corners]
+    return [*ring, ring[0]]
+
+
+def _position(along: float, right: float) -> Position:
+    """Longitude and latitude in degrees, 9 decimals."""
+    frame = FieldFrame(*CORNER_DEG)
+    ahead, sideways = east_north(EDGE_HEADING), east_north(EDGE_HEADING + math.pi / 2)
+    latitude, longitude = frame.degrees_from_east_north(
+        along * ahead[0] + right * sideways[0], along * ahead[1] + right * sideways[1]
+    )
+    return round(longitude, 9), round(latitude, 9)

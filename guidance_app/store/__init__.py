@@ -1,0 +1,23 @@
+"""Documents to files and back: found by name, written whole, never overwritten unseen, backed up as one zip."""
+
+from guidance_app.store.documents_folder import Named, Removed, Store, StoreConflictError
+from guidance_app.store.files import StoreError
+from guidance_app.store.folders import SAMPLE_RECORDING, copy_sample, data_folder, sample_folder
+from guidance_app.store.jobs import field_from_file, load_job
+from guidance_app.store.reading import Problem, Stored
+
+__all__ = [
+    "SAMPLE_RECORDING",
+    "Named",
+    "Problem",
+    "Removed",
+    "Store",
+    "StoreConflictError",
+    "StoreError",
+    "Stored",
+    "copy_sample",
+    "data_folder",
+    "field_from_file",
+    "load_job",
+    "sample_folder",
+]

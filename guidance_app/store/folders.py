@@ -1,0 +1,74 @@
+"""Where the data folder is, and the embedded sample that the program brings along."""
+
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+
+from platformdirs import user_data_dir
+
+from guidance_app.store.files import StoreError, why
+
+__all__ = ["SAMPLE_RECORDING", "copy_sample", "data_folder", "sample_folder"]
+
+PACKAGE = Path(__file__).resolve().parent.parent
+ENVIRONMENT_NAME = "GUIDANCE_DATA"
+SAMPLE_RECORDING = Path("recordings") / "sample"
+"""The embedded recording's folder inside a data folder."""
+_SAMPLE = (
+    Path("fields") / "sample-field",
+    Path("tractors") / "sample-tractor.json",
+    Path("implements") / "sample-implement.json",
+    Path("receivers") / "sample-receiver.json",
+    SAMPLE_RECORDING,
+)
+
+
+def data_folder(argument: Path | None, environment: Mapping[str, str]) -> Path:
+    """The data folder: ``argument`` (of ``--data``), GUIDANCE_DATA, ``fields/`` of the checkout or the user's data.
+
+    Raises ``StoreError`` when a file is in its place; nothing is created.
+    """
+    named = environment.get(ENVIRONMENT_NAME, "")
+    if argument is not None:
+        folder = argument
+    elif named:
+        folder = Path(named)
+    else:
+        folder = _checkout_folder() or Path(user_data_dir("guidance-app", appauthor=False))
+    folder = folder.expanduser().absolute()
+    if folder.exists() and not folder.is_dir():
+        msg = f"the data folder {folder} is a file; name a folder with --data or {ENVIRONMENT_NAME}"
+        raise StoreError(msg)
+    return folder
+
+
+def sample_folder() -> Path:
+    """Where the embedded sample lies: in the checkout, or inside an installed package. Raises ``StoreError``."""
+    for folder in (PACKAGE.parent / "fields", PACKAGE / "_fields"):
+        if (folder / SAMPLE_RECORDING).is_dir():
+            return folder
+    msg = f"the embedded sample is missing beside {PACKAGE}; install the program again"
+    raise StoreError(msg)
+
+
+def copy_sample(to: Path) -> Path:
+    """Copies the embedded sample, and nothing else that lies beside it, into ``to``. Raises ``StoreError``."""
+    source = sample_folder()
+    try:
+        for part in _SAMPLE:
+            target = to / part
+            target.parent.mkdir(parents=True, exist_ok=True)
+            if (source / part).is_dir():
+                shutil.copytree(source / part, target, dirs_exist_ok=True)
+            else:
+                shutil.copyfile(source / part, target)
+    except OSError as error:
+        msg = f"the sample cannot be copied to {to}: {why(error)}"
+        raise StoreError(msg) from error
+    return to
+
+
+def _checkout_folder() -> Path | None:
+    """``fields/`` beside the package when the program runs from a checkout."""
+    root = PACKAGE.parent
+    return root / "fields" if (root / "pyproject.toml").is_file() and (root / "fields").is_dir() else None
