@@ -1,0 +1,330 @@
+"""What the light bar and the prediction bar say, from a snapshot: every word, rounding, side and lamp. Pure.
+
+The two bars never share a strip. The lamps say where to **steer**: right of the line they light on the left. The
+prediction bar says where the tractor is **heading**: its mark stands right of the middle when the look-ahead ends
+right of the line, and in the middle when the wheel may stay as it is.
+
+Whatever is not known is absent. When there is nothing to steer by, the view has no cross-track error, no lamps and no
+number at all, and ``reason`` says in words why: a last value never stays standing.
+"""
+
+import json
+import math
+from bisect import bisect_right
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+from guidance_app.documents import Settings, Units
+from guidance_app.model import FixQuality, Guidance, LinkState, LinkStatus, Pose, Snapshot
+from guidance_app.view.instant import moved_right
+from guidance_app.view.units import area_text, distance_text, offset_text, speed_text, speed_unit
+
+__all__ = ["BarState", "BarView", "Steering", "TurnLevel", "TurnView", "bar_json", "bar_of", "lamp_zones", "style_json"]
+
+STALE_AFTER_S = 1.0
+"""A fix older than this, or than two intervals of a slower receiver, is no longer steered by."""
+
+TURN_SOON_S = 10.0
+TURN_NOW_S = 3.0
+
+
+class BarState(StrEnum):
+    """Whether there is something to steer by, and if not, why."""
+
+    GUIDE = "guide"
+    CONNECTING = "connecting"
+    NO_DATA = "no-data"
+    NO_SENTENCE = "no-sentence"
+    NO_FIX = "no-fix"
+    DOWN = "down"
+    ENDED = "ended"
+    STALE = "stale"
+    NOT_READY = "not-ready"
+    NO_DIRECTION = "no-direction"
+    NO_LINE = "no-line"
+
+
+REASONS = {
+    BarState.CONNECTING: "waiting for the receiver",
+    BarState.NO_DATA: "the receiver sends nothing",
+    BarState.NO_SENTENCE: "data, but no valid sentence",
+    BarState.NO_FIX: "no fix",
+    BarState.DOWN: "receiver lost",
+    BarState.ENDED: "end of the recording",
+    BarState.NOT_READY: "finding the position",
+    BarState.NO_DIRECTION: "direction unknown: drive 2 m",
+    BarState.NO_LINE: "no line",
+}
+
+TROUBLES: Mapping[LinkStatus, BarState | None] = {
+    LinkStatus.CONNECTING: BarState.CONNECTING,
+    LinkStatus.NO_DATA: BarState.NO_DATA,
+    LinkStatus.NO_SENTENCE: BarState.NO_SENTENCE,
+    LinkStatus.NO_FIX: BarState.NO_FIX,
+    LinkStatus.FIX: None,
+    LinkStatus.DOWN: BarState.DOWN,
+    LinkStatus.ENDED: BarState.ENDED,
+}
+MOVING = frozenset({BarState.GUIDE, BarState.NO_LINE, BarState.NO_DIRECTION})
+"""States in which the pose is of now, so that the speed may be shown."""
+
+QUALITIES = {
+    FixQuality.NONE: "no fix",
+    FixQuality.AUTONOMOUS: "GPS",
+    FixQuality.DGPS: "DGPS",
+    FixQuality.PPS: "PPS",
+    FixQuality.RTK_FIXED: "RTK fixed",
+    FixQuality.RTK_FLOAT: "RTK float",
+    FixQuality.DEAD_RECKONING: "dead reckoning",
+    FixQuality.MANUAL: "manual",
+    FixQuality.SIMULATED: "simulated",
+}
+
+
+class TurnLevel(StrEnum):
+    """How near the turn is: shown plain, yellow, red."""
+
+    FAR = "far"
+    SOON = "soon"
+    NOW = "now"
+
+
+@dataclass(frozen=True, slots=True)
+class TurnView:
+    """The end of the pass: how far, in how many seconds (empty at standstill), how urgent, whether the turn fits."""
+
+    distance: str
+    seconds: str
+    level: TurnLevel
+    fits: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Steering:
+    """What exists only while there is a line to steer by. Lengths in metres, positive right of the line.
+
+    ``lamps`` counts lit lamps, positive on the right: steer right; 0 is the middle alone. ``number`` is the unsigned
+    distance with its unit. ``predicted`` is the mark's place on the prediction bar, from -1 (left end) to 1, on the
+    lamps' own scale; ``lean`` its heading error in radians, positive turned right of the line.
+    """
+
+    cross_track: float
+    lamps: int
+    number: str
+    pass_text: str
+    predicted: float | None = None
+    predicted_number: str = ""
+    lean: float | None = None
+    turn: TurnView | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class BarView:
+    """All that the bars show. ``steering`` is there if and only if the state is ``GUIDE``; if not, ``reason`` is."""
+
+    sequence: int
+    state: BarState
+    reason: str
+    steering: Steering | None
+    fix_age: float | None
+    fix: str
+    speed: str
+    area: str
+    working: bool
+
+
+def bar_of(snapshot: Snapshot, now: float, settings: Settings) -> BarView:
+    """The bars at the instant ``now`` of the session clock: the newest pose is carried forward to it."""
+    fix_age = None if snapshot.fix is None else max(0.0, now - snapshot.fix.arrival)
+    state = _state(snapshot, fix_age)
+    pose = snapshot.pose if state in MOVING else None
+    steering = None
+    if state is BarState.GUIDE and pose is not None and snapshot.guidance is not None:
+        steering = _steering(snapshot, pose, snapshot.guidance, now, settings)
+    return BarView(
+        sequence=snapshot.sequence,
+        state=state,
+        reason=_reason(state, snapshot.link, fix_age),
+        steering=steering,
+        fix_age=fix_age,
+        fix=_fix_text(snapshot, fix_age, state),
+        speed="" if pose is None else speed_text(pose.speed, settings.units),
+        area=area_text(snapshot.totals.worked, settings.units),
+        working=snapshot.working,
+    )
+
+
+def _state(snapshot: Snapshot, fix_age: float | None) -> BarState:
+    trouble = TROUBLES[snapshot.link.status]
+    if trouble is not None:
+        return trouble
+    if fix_age is None:
+        return BarState.NO_FIX
+    if fix_age > max(STALE_AFTER_S, 2.0 * (snapshot.fix_interval or 0.0)):
+        return BarState.STALE
+    if snapshot.pose is None:
+        return BarState.NOT_READY
+    if not snapshot.pose.heading_known:
+        return BarState.NO_DIRECTION
+    return BarState.NO_LINE if snapshot.guidance is None else BarState.GUIDE
+
+
+def _reason(state: BarState, link: LinkState, fix_age: float | None) -> str:
+    """Why there is nothing to steer by. The link's own words belong to it where it broke, and are kept short."""
+    if state is BarState.GUIDE:
+        return ""
+    if state is BarState.STALE and fix_age is not None:
+        return f"no position for {fix_age:.0f} s"
+    if state is BarState.DOWN and link.reason:
+        return f"{REASONS[state]}: {link.reason}"[:60]
+    return REASONS[state]
+
+
+def _fix_text(snapshot: Snapshot, fix_age: float | None, state: BarState) -> str:
+    """Fix quality with its age; whole seconds, because a changing tenth draws the eye and says nothing."""
+    if snapshot.fix is None or fix_age is None:
+        return REASONS[BarState.NO_FIX]
+    if state in (BarState.NO_FIX, BarState.STALE, BarState.DOWN, BarState.NO_DATA, BarState.NO_SENTENCE):
+        return f"last fix {_age_text(fix_age)} ago"
+    return f"{QUALITIES[snapshot.fix.quality]}, {_age_text(fix_age)}"
+
+
+def _age_text(age: float) -> str:
+    if age < 1.0:
+        return "<1 s"
+    return f"{age:.0f} s" if age < 100 else f"{age / 60:.0f} min"
+
+
+def _steering(snapshot: Snapshot, pose: Pose, guidance: Guidance, now: float, settings: Settings) -> Steering:
+    seconds = now - pose.arrival
+    point = snapshot.implement[:2] if settings.guide_implement and snapshot.implement else (pose.east, pose.north)
+    off = guidance.cross_track + moved_right(guidance, pose, point, seconds)
+    steps, units = settings.light_bar_steps, settings.units
+    steering = Steering(
+        cross_track=off,
+        lamps=_lit(off, steps),
+        number=offset_text(off, units),
+        pass_text=_pass_text(guidance),
+        turn=_turn(guidance, pose, units),
+    )
+    ahead = snapshot.prediction
+    if ahead is None or ahead.cross_track is None:
+        return steering
+    predicted = ahead.cross_track + moved_right(guidance, ahead.pose, (ahead.pose.east, ahead.pose.north), seconds)
+    return replace(
+        steering,
+        predicted=_place(predicted, steps),
+        predicted_number=offset_text(predicted, units),
+        lean=ahead.heading_error,
+    )
+
+
+def _lit(off: float, steps: tuple[float, ...]) -> int:
+    """How many lamps are lit on the side to steer to: one a step reached. Zero is the middle lamp alone."""
+    reached = bisect_right(steps, abs(off))
+    return -reached if off > 0 else reached
+
+
+def _place(off: float, steps: tuple[float, ...]) -> float:
+    """-1 to 1: the same steps as the lamps, joined by straight lines."""
+    size = min(abs(off), steps[-1])
+    reached = bisect_right(steps, size)
+    if reached == len(steps):
+        return math.copysign(1.0, off)
+    below = steps[reached - 1] if reached else 0.0
+    part = (size - below) / (steps[reached] - below)
+    return math.copysign((reached + part) / len(steps), off)
+
+
+def lamp_zones(steps: tuple[float, ...]) -> str:
+    """One letter a lamp from the middle outward: g, y, r. The third of the steps nearest the line is green."""
+    green, yellow = len(steps) * 3 // 8, len(steps) * 6 // 8
+    return "".join("g" if lamp < green else "y" if lamp < yellow else "r" for lamp in range(len(steps)))
+
+
+def _pass_text(guidance: Guidance) -> str:
+    """``pass 3 of 24 (line +2)``: its place in the driving order, and its number counted from the guidance line."""
+    target = guidance.target
+    name = f"lap {target.number}" if target.lap else f"line {target.number:+d}" if target.number else "line 0"
+    if target.order is None:
+        return name
+    of_all = "" if guidance.count is None else f" of {guidance.count}"
+    return f"pass {target.order + 1}{of_all} ({name})"
+
+
+def _turn(guidance: Guidance, pose: Pose, units: Units) -> TurnView | None:
+    if guidance.turn is not None:
+        distance, seconds, fits = guidance.turn.distance, guidance.turn.seconds, guidance.turn.fits
+    elif guidance.remaining is not None:
+        distance, fits = max(0.0, guidance.remaining), True
+        seconds = distance / abs(pose.speed) if not pose.standing and abs(pose.speed) > 0.1 else None
+    else:
+        return None
+    return TurnView(distance_text(distance, units), _seconds_text(seconds), _turn_level(seconds), fits)
+
+
+def _seconds_text(seconds: float | None) -> str:
+    if seconds is None:
+        return ""
+    return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
+
+
+def _turn_level(seconds: float | None) -> TurnLevel:
+    if seconds is None or seconds >= TURN_SOON_S:
+        return TurnLevel.FAR
+    return TurnLevel.SOON if seconds >= TURN_NOW_S else TurnLevel.NOW
+
+
+# --- on the wire ---------------------------------------------------------------------------------------------------
+
+
+def bar_json(view: BarView, sent_ms: float | None = None) -> str:
+    """One message to the page, about 200 bytes whatever the length of the day. What is absent has no member.
+
+    ``q`` snapshot, ``t`` when it was sent (ms on the server's clock), ``s`` state, ``a`` age of the fix (ms), ``x``
+    cross-track error (mm, positive right), ``k`` lamps (positive: steer right), ``d`` number, ``p`` place of the
+    prediction (thousandths), ``e`` its number, ``h`` its lean (degrees), ``n`` pass, ``v`` speed, ``f`` fix, ``c``
+    area, ``w`` 1 while working, ``u`` turn (distance, seconds, level, 1 if it fits), ``r`` reason.
+    """
+    message: dict[str, object] = {
+        "q": view.sequence,
+        "t": None if sent_ms is None else round(sent_ms, 1),
+        "s": view.state.value,
+        "r": view.reason or None,
+        "a": None if view.fix_age is None else round(view.fix_age * 1000),
+        **({} if view.steering is None else _steering_members(view.steering)),
+        "v": view.speed or None,
+        "f": view.fix,
+        "c": view.area,
+        "w": int(view.working),
+    }
+    known = {name: value for name, value in message.items() if value is not None}
+    return json.dumps(known, separators=(",", ":"), ensure_ascii=False)
+
+
+def _steering_members(steering: Steering) -> dict[str, object]:
+    turn = steering.turn
+    return {
+        "x": round(steering.cross_track * 1000),
+        "k": steering.lamps,
+        "d": steering.number,
+        "p": None if steering.predicted is None else round(steering.predicted * 1000),
+        "e": steering.predicted_number or None,
+        "h": None if steering.lean is None else round(math.degrees(steering.lean)),
+        "n": steering.pass_text,
+        "u": None if turn is None else [turn.distance, turn.seconds, turn.level.value, int(turn.fits)],
+    }
+
+
+def style_json(settings: Settings, look_ahead_s: float) -> str:
+    """What changes only when the driver changes it: sent when a page joins and after a change."""
+    style = {
+        "speed": speed_unit(settings.units),
+        "zones": lamp_zones(settings.light_bar_steps),
+        "steps": [offset_text(step, settings.units) for step in settings.light_bar_steps],
+        "guided": "implement" if settings.guide_implement else "tractor",
+        "ahead": f"{look_ahead_s:g} s",
+        "sounds": settings.sounds,
+    }
+    return json.dumps({"style": style}, separators=(",", ":"), ensure_ascii=False)
