@@ -143,6 +143,16 @@ class Pacer:
             self._jump(position)
             self._wake()
 
+    @property
+    def sought(self) -> bool:
+        """Whether a jump waits to be taken."""
+        return self._sought is not None
+
+    def interrupt(self) -> None:
+        """Makes a waiting ``next`` give None at once, so that its consumer can look at what else there is."""
+        with self._changed:
+            self._wake()
+
     def close(self) -> None:
         """Ends it: ``next`` gives None from now on, at once where it waits."""
         with self._changed:
