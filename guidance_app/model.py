@@ -302,7 +302,8 @@ class SegmentKind(StrEnum):
 class Segment:
     """One stretch of a plan in driving order. ``missing`` is by how many metres a turn does not fit, 0 if it fits.
 
-    ``number`` is the geometric number of a pass or lap, and for turns and transfers that of the pass they lead to.
+    ``number`` is the geometric number of a pass or lap, unique over the plan: passes 1..n, then the laps and the sides
+    of laps that are worked to a square corner; for turns and transfers it is that of the pass they lead to.
     ``reverse`` marks the backward leg of a fishtail.
     """
 

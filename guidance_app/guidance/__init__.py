@@ -1,0 +1,1 @@
+"""Guidance: what to drive. Plans of a whole field, families of lines, tracking of the pass, and worked area."""

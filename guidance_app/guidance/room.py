@@ -1,0 +1,91 @@
+"""Whether body and implement stay inside the field along a path, and by how many metres they do not."""
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely import Polygon
+
+from guidance_app.guidance.manoeuvres import Manoeuvres, poses_along
+from guidance_app.guidance.request import Body
+from guidance_app.model import FloatArray
+
+__all__ = ["TOUCH", "Room"]
+
+TOUCH = 0.05
+"""Metres that body or implement may stick out: a lap along the boundary touches it with the implement's end."""
+
+POSES = 33
+"""Poses at which a candidate is checked, beside the traces of all corners between them."""
+
+TRACTOR_REAR = -0.6
+"""Metres from the axle to the tractor's rear end."""
+
+BoolArray = NDArray[np.bool_]
+
+
+class Room:
+    """The ground that a machine may cover: the field without its obstacles."""
+
+    def __init__(self, polygon: Polygon, body: Body) -> None:
+        self.ground: Polygon = polygon.buffer(TOUCH, quad_segs=2)
+        self.polygon = polygon
+        self.boundary = polygon.boundary
+        self._outline = _outline(body)
+        self.reach = float(np.hypot(self._outline[:, 0], self._outline[:, 1]).max())
+        shapely.prepare(self.ground)
+        shapely.prepare(self.polygon)
+        shapely.prepare(self.boundary)
+
+    def fits(self, moves: Manoeuvres) -> BoolArray:
+        """For each existing candidate whether the whole machine stays inside all along."""
+        if not len(moves.start):
+            return np.zeros(0, dtype=bool)
+        stations = moves.total[:, None] * np.linspace(0.0, 1.0, POSES)
+        return self.fits_poses(poses_along(moves, stations))
+
+    def fits_poses(self, poses: FloatArray) -> BoolArray:
+        """The same for poses (C, K, 3); corners' traces between neighbouring poses are checked too."""
+        corners = self._corners(poses)
+        outlines = shapely.linestrings(corners)
+        traces = shapely.linestrings(np.swapaxes(corners, 1, 2))
+        inside: BoolArray = shapely.covers(self.ground, traces).all(axis=1)
+        inside[inside] = shapely.covers(self.ground, outlines[inside]).all(axis=1)
+        return inside
+
+    def path_inside(self, poses: FloatArray) -> BoolArray:
+        """For poses (C, K, 3) whether the path itself stays inside."""
+        lines = shapely.linestrings(np.ascontiguousarray(poses[..., :2]))
+        covered: BoolArray = shapely.covers(self.polygon, lines)
+        return covered
+
+    def missing(self, poses: FloatArray) -> FloatArray:
+        """Metres by which the machine sticks out at its worst along poses (C, K, 3); 0 where it fits."""
+        corners = self._corners(poses)
+        apart: FloatArray = shapely.distance(self.polygon, shapely.points(corners)).max(axis=(1, 2))
+        return apart
+
+    def _corners(self, poses: FloatArray) -> FloatArray:
+        """Shape (C, K, B, 2): the outline's corners at each pose, the first one repeated at the end."""
+        cosine, sine = np.cos(poses[..., 2])[..., None], np.sin(poses[..., 2])[..., None]
+        forward, left = self._outline[:, 0], self._outline[:, 1]
+        east = poses[..., 0, None] + forward * cosine - left * sine
+        north = poses[..., 1, None] + forward * sine + left * cosine
+        return np.stack([east, north], axis=-1)
+
+
+def _outline(body: Body) -> FloatArray:
+    """Corners (B, 2): forward and left of the working centre; closed."""
+    middle, half = body.offset_right, body.half_width
+    wide = body.implement_half_width
+    corners = [
+        (body.front, middle + half),
+        (body.front, middle - half),
+        (TRACTOR_REAR, middle - half),
+        (body.implement_front, -wide),
+        (body.implement_rear, -wide),
+        (body.implement_rear, wide),
+        (body.implement_front, wide),
+        (TRACTOR_REAR, middle + half),
+        (body.front, middle + half),
+    ]
+    return np.array(corners)
