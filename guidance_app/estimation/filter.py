@@ -174,7 +174,8 @@ class AdaptiveSettings(_Part):
     velocity_noise: float = quantity("Noise of the receiver's velocity", "m/s", 0.005, 2, 0.05)
     gyro_noise: float = quantity("Noise of the gyro", "rad/s", 1e-5, 0.5, 0.003, step=0.0001)
     gyro_walk: float = quantity("Walk of the gyro's bias", "rad/s per square root of s", 0, 0.01, 2e-5, step=1e-6)
-    heading_noise: float = quantity("Noise of a heading sensor", "deg", 0.02, 20, 0.5, step=0.1)
+    heading_noise_deg: float = quantity("Noise of a heading sensor", "deg", 0.02, 20, 0.5, step=0.1)
+    heading_walk: float = quantity("Walk of the heading", "rad per square root of s", 1e-6, 0.1, 0.002, step=0.001)
     gate: float = quantity("Outlier gate", "chi-square of 2", 6, 40, 15, step=0.1)
 
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from guidance_app.estimation.filter import Filter, FilterFactory, FilterSettings
+from guidance_app.estimation.filters.adaptive import Adaptive
 from guidance_app.estimation.filters.off import Off
 from guidance_app.estimation.filters.quantisation_kf import QuantisationFilter
 
@@ -11,6 +12,7 @@ __all__ = ["FILTERS", "make_filter"]
 
 FILTERS: Mapping[str, FilterFactory] = MappingProxyType(
     {
+        "adaptive": Adaptive,
         "off": Off,
         "quantisation_kf": QuantisationFilter,
     }

@@ -1,0 +1,58 @@
+"""Does the tractor stand? From the receiver's speed where there is one, else from fixes that stay where they are.
+
+A speed below 0.12 m/s for half a second is standing (receivers creep by some centimetres a second at rest). Fixes alone
+say less: those that stay within one cell for a time bound the speed by cell over time, and that is what is passed on.
+"""
+
+import math
+from dataclasses import dataclass
+
+from guidance_app.estimation.receiver_noise import DEFAULT_CELL
+from guidance_app.model import Measurement
+
+__all__ = ["Stillness"]
+
+SLOW = 0.12
+SLOW_FOR = 0.5
+HELD_FOR = 1.0
+STANDING_SD = 0.01
+"""How still, in m/s, a tractor is whose receiver says that it stands."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stillness:
+    """Since when the fix has stayed where it is, and since when the receiver's speed has been low. Times are ``t``."""
+
+    east: float
+    north: float
+    held_since: float
+    slow_since: float | None
+
+    @staticmethod
+    def of(z: Measurement) -> "Stillness":
+        """At the first measurement."""
+        return Stillness(z.east, z.north, z.t, z.t if _slow(z) else None)
+
+    def after(self, z: Measurement, white: float) -> "Stillness":
+        """With one more measurement, whose white scatter is ``white`` metres."""
+        slow_since = (self.slow_since if self.slow_since is not None else z.t) if _slow(z) else None
+        cell_east, cell_north = z.cell or (DEFAULT_CELL, DEFAULT_CELL)
+        reach = 3.0 * white
+        held = abs(z.east - self.east) < cell_east / 2 + reach and abs(z.north - self.north) < cell_north / 2 + reach
+        if held:
+            return Stillness(self.east, self.north, self.held_since, slow_since)
+        return Stillness(z.east, z.north, z.t, slow_since)
+
+    def speed_bound(self, z: Measurement, white: float) -> float | None:
+        """Standard deviation of the speed about zero, in m/s; None while the tractor is not known to stand."""
+        if z.speed is not None:
+            stands = self.slow_since is not None and z.t - self.slow_since >= SLOW_FOR
+            return STANDING_SD if stands else None
+        held = z.t - self.held_since
+        if held < HELD_FOR:
+            return None
+        return (max(z.cell or (DEFAULT_CELL,)) + 6.0 * white) / (held * math.sqrt(3.0))
+
+
+def _slow(z: Measurement) -> bool:
+    return z.speed is not None and z.speed < SLOW
