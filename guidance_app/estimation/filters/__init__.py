@@ -5,6 +5,7 @@ from types import MappingProxyType
 
 from guidance_app.estimation.filter import Filter, FilterFactory, FilterSettings
 from guidance_app.estimation.filters.adaptive import Adaptive
+from guidance_app.estimation.filters.gyro_ekf import GyroFilter
 from guidance_app.estimation.filters.off import Off
 from guidance_app.estimation.filters.quantisation_kf import QuantisationFilter
 
@@ -13,6 +14,7 @@ __all__ = ["FILTERS", "make_filter"]
 FILTERS: Mapping[str, FilterFactory] = MappingProxyType(
     {
         "adaptive": Adaptive,
+        "gyro_ekf": GyroFilter,
         "off": Off,
         "quantisation_kf": QuantisationFilter,
     }
