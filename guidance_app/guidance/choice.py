@@ -1,0 +1,139 @@
+"""Which pass is guided along, with hysteresis: the search must not jump to another line.
+
+A pass on which the implement works is kept, however far the tractor drifts, until the implement is lifted, a lap has
+come round, or the tractor has turned away by more than 60 degrees (somebody who turns with the implement down). Then,
+in this order:
+
+1. A pass that the driver took stays until the tractor has been on it.
+2. A done pass that has been left, over its end or by turning away, gives way to the next of the order.
+3. Where the implement is lowered, a pass within half a spacing and along the heading is meant, done or not.
+4. A pass not yet done that is nearer by a fifth of a spacing and within 30 degrees of the heading, for a second and
+   two metres, takes over; not while the tractor follows the planned way to its target.
+"""
+
+import copy
+import math
+from collections.abc import Set
+
+from guidance_app.guidance.itinerary import GuideLine, Itinerary
+from guidance_app.guidance.progress import Progress
+from guidance_app.guidance.reading import Reading, Seen, off_axis
+
+__all__ = ["Choice"]
+
+TURNED_AWAY = math.radians(60)
+"""Turned so far from the pass, the tractor has left it even with the implement down."""
+
+LEFT = math.radians(30)
+"""Turned so far from a done pass with the implement up, the tractor has left it."""
+
+ALONG = math.radians(30)
+"""Another pass is considered only when the tractor points along it within this."""
+
+CLEARLY_NEARER = 0.2
+"""In swath spacings: by so much another pass has to be nearer."""
+
+SETTLED_TIME = 1.0
+SETTLED_DISTANCE = 2.0
+"""For so long (s) and so far (m) another pass has to be the better one."""
+
+LAP_CLOSED = 2.0
+"""Metres of a lap that may be missing when it is finished with the implement down."""
+
+
+class Choice:
+    """Remembers what the driver has taken, whether the pass is engaged, and since when another one is better."""
+
+    def __init__(self, itinerary: Itinerary, spacing: float) -> None:
+        self.itinerary = itinerary
+        self.spacing = spacing
+        self.held = False
+        self.engaged = False
+        self._was_working = False
+        self._better: int | None = None
+        self._better_since = (0.0, 0.0, 0.0)
+
+    def fork(self) -> "Choice":
+        """An independent copy."""
+        return copy.copy(self)
+
+    def take(self) -> None:
+        """The driver has chosen: nothing else until the tractor has been there."""
+        self.held, self.engaged, self._better = True, False, None
+
+    def step(self, seen: Seen, reading: Reading, progress: Progress, side: int) -> int:
+        """The key to guide along now. ``side`` as in ``Itinerary.following``."""
+        key = reading.line.key
+        lowered = seen.working and not self._was_working
+        self._was_working = seen.working
+        self._engage(seen, reading)
+        if self.engaged and not _lap_closed(reading.line, progress):
+            self._better = None
+            return key
+        if key in progress.done and not self.held and (self.engaged or _has_left(reading)):
+            self.engaged = False
+            following = self.itinerary.following(key, progress.done, side)
+            return key if following is None else following
+        if lowered and not reading.on_pass:
+            return self._lowered_on(seen, key)
+        if self.held or self._on_the_way(seen, key):
+            self._better = None
+            return key
+        return self._settled(seen, reading, progress.done)
+
+    def _engage(self, seen: Seen, reading: Reading) -> None:
+        if reading.on_pass:
+            self.held = False
+        if not seen.working or reading.off_axis > TURNED_AWAY:
+            self.engaged = False
+        elif reading.on_pass:
+            self.engaged = True
+
+    def _on_the_way(self, seen: Seen, key: int) -> bool:
+        way = self.itinerary.way_to(key)
+        return way is not None and way.passes_by(seen.east, seen.north, 0.5 * self.spacing)
+
+    def _lowered_on(self, seen: Seen, key: int) -> int:
+        distance, nearest = self._nearest_along(seen, key, frozenset())
+        if nearest is None or distance > 0.5 * self.spacing:
+            return key
+        self.held, self._better = False, None
+        return nearest
+
+    def _settled(self, seen: Seen, reading: Reading, done: Set[int]) -> int:
+        key = reading.line.key
+        distance, nearest = self._nearest_along(seen, key, done)
+        if nearest is None or distance > reading.foot.distance - CLEARLY_NEARER * self.spacing:
+            self._better = None
+            return key
+        if nearest != self._better:
+            self._better, self._better_since = nearest, (seen.t, seen.east, seen.north)
+            return key
+        since, east, north = self._better_since
+        if seen.t - since < SETTLED_TIME or math.hypot(seen.east - east, seen.north - north) < SETTLED_DISTANCE:
+            return key
+        self._better = None
+        return nearest
+
+    def _nearest_along(self, seen: Seen, key: int, without: Set[int]) -> tuple[float, int | None]:
+        """Distance and key of the nearest other pass along the heading, within a spacing."""
+        best: tuple[float, int | None] = (self.spacing, None)
+        if not seen.heading_known:
+            return best
+        for other in self.itinerary.candidates(seen.east, seen.north):
+            line = self.itinerary.line(other)
+            if other == key or other in without or line is None:
+                continue
+            foot = line.polyline.foot(seen.east, seen.north)
+            if foot.distance < best[0] and off_axis(seen.heading, foot.direction) <= ALONG:
+                best = (foot.distance, other)
+        return best
+
+
+def _has_left(reading: Reading) -> bool:
+    beyond = not reading.line.target.closed and not reading.line.target.endless and reading.to_end <= 0
+    return beyond or reading.off_axis > LEFT
+
+
+def _lap_closed(line: GuideLine, progress: Progress) -> bool:
+    return line.target.closed and progress.worked(line.key) >= line.polyline.length - LAP_CLOSED

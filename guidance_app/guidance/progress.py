@@ -1,0 +1,62 @@
+"""How much of each pass has been worked: stretches of along-track, merged as they grow.
+
+Work on the prolongation of a pass counts too, because the implement hangs behind the guided point: it begins and ends
+its work when that point is already some metres further.
+"""
+
+import bisect
+import itertools
+import math
+
+__all__ = ["DONE_FRACTION", "Progress"]
+
+DONE_FRACTION = 0.9
+"""A pass counts as done when this much of its length has been worked."""
+
+JOINED = 0.5
+"""Stretches with less than this between them are one."""
+
+MOST_STRETCHES = 64
+"""More stretches of one pass than this are joined across their smallest gap: bounded memory."""
+
+Stretches = tuple[tuple[float, float], ...]
+
+
+class Progress:
+    """Worked stretches by pass; ``fork`` costs one copy of a dictionary, the stretches themselves are values."""
+
+    def __init__(self, done: frozenset[int] = frozenset()) -> None:
+        self.done = done
+        self._stretches: dict[int, Stretches] = {}
+
+    def fork(self) -> "Progress":
+        """An independent copy."""
+        copy = Progress(self.done)
+        copy._stretches = dict(self._stretches)
+        return copy
+
+    def add(self, key: int, start: float, end: float) -> None:
+        """Counts the stretch between two along-track distances, in either order."""
+        low, high = min(start, end), max(start, end)
+        known = self._stretches.get(key, ())
+        first = bisect.bisect_left(known, low - JOINED, key=lambda stretch: stretch[1])
+        last = bisect.bisect_right(known, high + JOINED, key=lambda stretch: stretch[0])
+        if first < last:
+            low, high = min(low, known[first][0]), max(high, known[last - 1][1])
+        stretches = (*known[:first], (low, high), *known[last:])
+        self._stretches[key] = stretches if len(stretches) <= MOST_STRETCHES else _joined(stretches)
+
+    def worked(self, key: int) -> float:
+        """Metres of the pass worked so far."""
+        return math.fsum(high - low for low, high in self._stretches.get(key, ()))
+
+    def finish(self, key: int) -> None:
+        """Counts a pass as done."""
+        if key not in self.done:
+            self.done |= {key}
+
+
+def _joined(stretches: Stretches) -> Stretches:
+    gaps = [after[0] - before[1] for before, after in itertools.pairwise(stretches)]
+    i = gaps.index(min(gaps))
+    return (*stretches[:i], (stretches[i][0], stretches[i + 1][1]), *stretches[i + 2 :])
