@@ -28,11 +28,11 @@ CORNER_DEG = (41.930, -4.870)
 EDGE_HEADING = math.radians(24.0)
 """Of the long edges."""
 
-OUTER = ((0, 0), (118, 1.6), (296, 0), (304, 30), (299, 71.5), (152, 72), (8, 70.5), (3, 34))
+OUTER = ((0, 0), (104, 1.7), (247, 0.3), (256, 31), (250, 83.6), (-4, 83.6), (5, 38))
 """Corners in metres: along the long edge, and to its right."""
 
-TREES = ((286, 57), (290, 55.5), (293.5, 58), (293, 62.5), (288.5, 63.5), (285.5, 61))
-"""A group of trees near the far end."""
+TREES = ((238, 74), (241.5, 72.5), (244.5, 75), (244, 79), (240, 80), (237.5, 77.5))
+"""A group of trees in the far right corner."""
 
 ENTRANCE = (4.0, 10.0)
 
@@ -79,7 +79,8 @@ def _operation() -> Operation:
         receiver="Sample receiver",
         method=Method.ROUND_TRIP,
         direction=Direction.LONGEST_EDGE,
-        turning_space=12.0,
+        turning_space=18.0,
+        reverse_allowed=False,
         product="Harrowing",
     )
 
