@@ -12,7 +12,7 @@ from guidance_app.documents import HitchKind, Implement, Tractor
 from guidance_app.geodesy import FieldFrame
 from guidance_app.model import Attitude, Fix, Measurement, Pose
 
-__all__ = ["ImplementPoint", "level_lever_arm", "measurement_from_fix", "offset_point"]
+__all__ = ["ImplementPoint", "carried", "level_lever_arm", "measurement_from_fix", "offset_point"]
 
 FRESH = 1.0
 """An attitude older or newer than this many seconds against the fix says nothing about it."""
@@ -78,6 +78,14 @@ def measurement_from_fix(fix: Fix, attitude: Attitude | None, frame: FieldFrame,
         pitch=pitch,
         antenna=level_lever_arm(arm, roll or 0.0, pitch or 0.0),
     )
+
+
+def carried(point: tuple[float, float], before: Pose, after: Pose) -> tuple[float, float]:
+    """Where (east, north) of a point that is fixed to the tractor comes to lie when the pose changes."""
+    sine, cosine = math.sin(before.heading), math.cos(before.heading)
+    east, north = point[0] - before.east, point[1] - before.north
+    forward, right = east * sine + north * cosine, east * cosine - north * sine
+    return offset_point(after.east, after.north, after.heading, forward, right)
 
 
 def _first(one: float | None, other: float | None) -> float | None:

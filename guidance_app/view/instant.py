@@ -6,8 +6,8 @@ cross-track error at the fix itself is the engine's, so at the fix both agree to
 
 import numpy as np
 
-from guidance_app.angles import east_north
 from guidance_app.estimation.prediction import pose_after
+from guidance_app.estimation.reference_point import carried
 from guidance_app.model import FloatArray, Guidance, Pose
 
 __all__ = ["moved_right"]
@@ -18,28 +18,16 @@ Point = tuple[float, float]
 def moved_right(guidance: Guidance, pose: Pose, point: Point, seconds: float) -> float:
     """Metres that ``point``, carried by the tractor at ``pose``, moves to the right of the target pass in ``seconds``.
 
+    A trailed implement follows late; here it is taken as fixed to the tractor.
     Right as seen in the present direction of travel. Zero when nothing moves.
     """
     later = pose_after(pose, seconds)
     if (later.east, later.north, later.heading) == (pose.east, pose.north, pose.heading):
         return 0.0
-    after = _carried(point, pose, later)
+    after = carried(point, pose, later)
     points, closed = guidance.target.points, guidance.target.closed
     moved = _right_of(points, after, closed=closed) - _right_of(points, point, closed=closed)
     return -moved if guidance.against else moved
-
-
-def _carried(point: Point, before: Pose, after: Pose) -> Point:
-    """Where a point fixed to the tractor comes to lie. A trailed implement follows late; here it is taken as fixed."""
-    ahead, right = east_north(before.heading), east_north(before.heading + np.pi / 2)
-    east, north = point[0] - before.east, point[1] - before.north
-    forward = east * ahead[0] + north * ahead[1]
-    sideways = east * right[0] + north * right[1]
-    ahead, right = east_north(after.heading), east_north(after.heading + np.pi / 2)
-    return (
-        after.east + forward * ahead[0] + sideways * right[0],
-        after.north + forward * ahead[1] + sideways * right[1],
-    )
 
 
 def _right_of(points: FloatArray, place: Point, *, closed: bool) -> float:

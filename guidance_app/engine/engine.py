@@ -1,0 +1,219 @@
+"""Event in, next ``Snapshot`` out; the engine only sequences. A case may call, not compute.
+
+One engine serves the live drive, the replay, the batch and the tests; it knows no clock, no file and no screen. Two
+engines that are given the same events reach the same snapshots to the bit. ``fork`` gives an independent copy that
+shares everything immutable: a replay keeps one every so often, to jump back to.
+"""
+
+import copy
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import assert_never
+
+from guidance_app.decode.decoder import Decoder
+from guidance_app.documents import Job
+from guidance_app.engine.link import after_chunk, after_down, after_up
+from guidance_app.engine.work_done import WorkDone
+from guidance_app.estimation import FilterSettings, make_filter
+from guidance_app.estimation.prediction import Predictor
+from guidance_app.estimation.reference_point import ImplementPoint, measurement_from_fix
+from guidance_app.geodesy import FieldFrame
+from guidance_app.model import (
+    Attitude,
+    Chunk,
+    Command,
+    Commanded,
+    DropOffset,
+    Event,
+    Fix,
+    LinkState,
+    LinkStatus,
+    NoFix,
+    Observation,
+    OffsetKind,
+    OffsetRecord,
+    OnTheMark,
+    Pose,
+    Rejected,
+    SetLookAhead,
+    Snapshot,
+    SourceDown,
+    SourceUp,
+)
+
+__all__ = ["Engine"]
+
+OFF = "off"
+
+
+class Engine:
+    """Holds what one session remembers between events. Not thread-safe; its snapshots are.
+
+    ``filter_name`` goes before the receiver document's choice. Raises ``ValueError`` for a filter that is not known.
+    """
+
+    def __init__(self, job: Job, *, filter_name: str | None = None, settings: FilterSettings | None = None) -> None:
+        self._job = job
+        receiver = job.receiver
+        self._filter_name = filter_name or (receiver.filter if receiver.filter_on else OFF)
+        self._filter = make_filter(self._filter_name, settings)
+        self._decoders: dict[str, Decoder] = {}
+        self._attitude: Attitude | None = None
+        self._implement = ImplementPoint(job.implement)
+        self._predictor = Predictor(settings)
+        self._look_ahead = receiver.look_ahead
+        self._mark: OffsetRecord | None = None
+        self._work = WorkDone(job)
+        self._frame = self._work.frame
+        self._raw_pose: Pose | None = None
+        self._snapshot = self._shown(
+            Snapshot(0, 0.0, LinkState(), look_ahead_s=self._look_ahead, filter_name=self._filter_name)
+        )
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The newest snapshot."""
+        return self._snapshot
+
+    @property
+    def wake_at(self) -> float | None:
+        """When a half-received epoch wants to be closed, on the session clock; None when there is none."""
+        waiting = [one.wake_at for one in self._decoders.values() if one.wake_at is not None]
+        return min(waiting, default=None)
+
+    def fork(self, generation: int | None = None) -> "Engine":
+        """An independent copy; with a new ``generation`` its readers see that time has jumped."""
+        other = copy.copy(self)
+        vars(other).update(
+            _decoders={link: one.fork() for link, one in self._decoders.items()},
+            _filter=self._filter.fork(),
+            _implement=self._implement.fork(),
+            _predictor=self._predictor.fork(),
+            _work=self._work.fork(),
+            _snapshot=self._snapshot if generation is None else replace(self._snapshot, generation=generation),
+        )
+        return other
+
+    def step(self, event: Event) -> Snapshot:
+        """The snapshot after one more event."""
+        for snapshot in self.steps(event):
+            self._snapshot = snapshot
+        return self._snapshot
+
+    def steps(self, event: Event) -> Iterator[Snapshot]:
+        """The snapshots after each fix that the event closed, or one when it closed none."""
+        match event:
+            case Chunk():
+                yield from self._take_bytes(event)
+            case Commanded():
+                yield self._publish(event.arrival, self._command(event.arrival, event.command))
+            case SourceUp():
+                yield self._publish(event.arrival, replace(self._snapshot, link=after_up(self._snapshot.link, event)))
+            case SourceDown():
+                yield from self._end_of_link(event)
+            case _:
+                assert_never(event)
+
+    def failed(self, arrival: float, reason: str) -> Snapshot:
+        """The snapshot that says that the engine itself has failed, with nothing to steer by."""
+        link = replace(self._snapshot.link, status=LinkStatus.DOWN, since=arrival, reason=f"internal error: {reason}")
+        return self._publish(arrival, replace(self._snapshot, link=link, pose=None, guidance=None, prediction=None))
+
+    def _publish(self, arrival: float, snapshot: Snapshot) -> Snapshot:
+        self._snapshot = replace(snapshot, sequence=self._snapshot.sequence + 1, arrival=arrival)
+        return self._snapshot
+
+    def _decoder(self, link: str) -> Decoder:
+        if link not in self._decoders:
+            self._decoders[link] = Decoder(link)
+        return self._decoders[link]
+
+    def _take_bytes(self, chunk: Chunk) -> Iterator[Snapshot]:
+        decoder = self._decoder(chunk.link)
+        yield from self._observe(chunk, decoder.feed(chunk), decoder)
+
+    def _end_of_link(self, event: SourceDown) -> Iterator[Snapshot]:
+        decoder = self._decoder(event.link)
+        closed = decoder.finish(event.arrival)
+        if closed:
+            yield from self._observe(Chunk(event.arrival, b"", event.link), closed, decoder)
+        link = after_down(self._snapshot.link, event)
+        yield self._publish(event.arrival, replace(self._snapshot, link=link))
+
+    def _observe(self, chunk: Chunk, closed: tuple[Observation, ...], decoder: Decoder) -> Iterator[Snapshot]:
+        counts = (decoder.sentences, sum(decoder.rejected.values()))
+        link = after_chunk(self._snapshot.link, chunk, closed, counts)
+        snapshot = replace(self._snapshot, link=link)
+        fixes = 0
+        for one in closed:
+            match one:
+                case Fix():
+                    fixes += 1
+                    snapshot = self._publish(chunk.arrival, self._fix(snapshot, one))
+                    yield snapshot
+                case Attitude():
+                    self._attitude = one
+                    snapshot = replace(snapshot, attitude=one)
+                case NoFix() | Rejected():
+                    pass
+                case _:
+                    assert_never(one)
+        if not fixes:
+            yield self._publish(chunk.arrival, snapshot)
+
+    def _fix(self, snapshot: Snapshot, fix: Fix) -> Snapshot:
+        """From one fix to guidance: frame, measurement, filter, implement, guidance, coverage."""
+        if self._frame is None:
+            self._frame = FieldFrame(fix.latitude_deg, fix.longitude_deg)
+            self._work.begin_at(self._frame)
+        interval = snapshot.fix_interval if snapshot.fix is None else fix.t - snapshot.fix.t
+        snapshot = replace(snapshot, fix=fix, fix_interval=interval or snapshot.fix_interval)
+        try:
+            measurement = measurement_from_fix(fix, self._attitude, self._frame, self._job.tractor)
+        except ValueError as error:
+            nothing = replace(snapshot, pose=None, guidance=None, prediction=None, implement=None)
+            return replace(nothing, notices=(*self._work.notices, str(error)))
+        self._raw_pose = self._filter.step(measurement)
+        return self._guide(snapshot, reported=fix.implement_down)
+
+    def _guide(self, snapshot: Snapshot, *, reported: bool | None) -> Snapshot:
+        pose = self._marked(self._raw_pose)
+        if pose is None:
+            return self._shown(replace(snapshot, pose=None, guidance=None, prediction=None, implement=None))
+        implement = self._implement.step(pose)
+        prediction = self._predictor.step(pose, self._look_ahead)
+        self._work.step(pose, implement, reported=reported)
+        if prediction is not None:
+            prediction = self._work.ahead(prediction)
+        return self._shown(replace(snapshot, pose=pose, implement=implement, prediction=prediction))
+
+    def _marked(self, pose: Pose | None) -> Pose | None:
+        """The pose with the driver's position offset."""
+        if pose is None or self._mark is None:
+            return pose
+        return replace(pose, east=pose.east + self._mark.east, north=pose.north + self._mark.north)
+
+    def _command(self, arrival: float, command: Command) -> Snapshot:
+        match command:
+            case SetLookAhead():
+                self._look_ahead = command.seconds
+                return replace(self._snapshot, look_ahead_s=command.seconds)
+            case OnTheMark():
+                self._mark = self._mark_from(arrival, command)
+            case DropOffset(kind=OffsetKind.MARK):
+                self._mark = None
+            case _:
+                self._work.command(command, arrival)
+        return self._shown(self._snapshot)
+
+    def _shown(self, snapshot: Snapshot) -> Snapshot:
+        """With what there is to guide along, what is worked, and every offset in force."""
+        return self._work.shown_in(snapshot, () if self._mark is None else (self._mark,))
+
+    def _mark_from(self, arrival: float, command: OnTheMark) -> OffsetRecord | None:
+        """The offset that puts the reference point where the driver says it stands; unchanged without a pose."""
+        if self._frame is None or self._raw_pose is None:
+            return self._mark
+        east, north = self._frame.east_north_from_degrees(command.latitude_deg, command.longitude_deg)
+        pose = self._raw_pose
+        return OffsetRecord(OffsetKind.MARK, arrival, east=east - pose.east, north=north - pose.north)

@@ -1,0 +1,99 @@
+"""What there is to guide along: the field, its plan, or the lines beside a first straight stretch."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from guidance_app.boundary import frame_of, polygon_in
+from guidance_app.documents import FieldDocument, Job, Method
+from guidance_app.geodesy import FieldFrame
+from guidance_app.guidance.family import ParallelLines, PassFamily
+from guidance_app.guidance.planning import PlanError, plan_operation, request_from_documents
+from guidance_app.model import FloatArray, Pass, Plan, SegmentKind
+
+__all__ = ["Ground", "ground_beside", "ground_of", "mainland_of", "shown_beside"]
+
+SHOWN_TO_A_SIDE = 12
+"""Without a field so many passes are shown to either side of the target."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ground:
+    """The field's polygon in its frame, and the plan or the family of passes on it. All may be None but the frame."""
+
+    frame: FieldFrame
+    polygon: shapely.Polygon | None = None
+    rings: tuple[FloatArray, ...] = ()
+    plan: Plan | None = None
+    family: PassFamily | None = None
+    passes: tuple[Pass, ...] = ()
+    notices: tuple[str, ...] = ()
+
+
+def ground_of(job: Job) -> Ground | None:
+    """The ground of a job's field, with the operation planned; None without a field.
+
+    A field that cannot be planned is driven along a line instead, and the reason is a notice.
+    """
+    if job.field is None:
+        return None
+    frame = frame_of(job.field.boundary)
+    polygon = polygon_in(frame, job.field.boundary)
+    rings = tuple(_read_only(shapely.get_coordinates(ring)) for ring in (polygon.exterior, *polygon.interiors))
+    if job.operation is not None and job.operation.method is Method.LINE:
+        return Ground(frame, polygon, rings)
+    try:
+        request = request_from_documents(job.tractor, job.implement, job.operation, _entrance(frame, job.field))
+        plan = plan_operation(polygon, request)
+    except PlanError as error:
+        return Ground(frame, polygon, rings, notices=(f"No plan: {error}. Guiding along the first straight stretch.",))
+    return Ground(frame, polygon, rings, plan, passes=_passes_of(plan), notices=plan.warnings)
+
+
+def ground_beside(ground: Ground, stretch: tuple[tuple[float, float], tuple[float, float]], spacing: float) -> Ground:
+    """The same ground with lines beside a stretch that was driven, from its start to its end."""
+    family = ParallelLines(*stretch, spacing)
+    return Ground(
+        ground.frame,
+        ground.polygon,
+        ground.rings,
+        family=family,
+        passes=shown_beside(family, 0),
+        notices=ground.notices,
+    )
+
+
+def shown_beside(family: PassFamily, number: int) -> tuple[Pass, ...]:
+    """The passes of a family that a screen shows around this one."""
+    numbers = range(number - SHOWN_TO_A_SIDE, number + SHOWN_TO_A_SIDE + 1)
+    made = (family.pass_numbered(one) for one in numbers)
+    return tuple(one for one in made if one is not None)
+
+
+def mainland_of(plan: Plan | None) -> shapely.MultiPolygon | None:
+    """The mainland of a plan as one geometry."""
+    if plan is None or not plan.mainland:
+        return None
+    return shapely.MultiPolygon([shapely.Polygon(part[0], part[1:]) for part in plan.mainland])
+
+
+def _passes_of(plan: Plan) -> tuple[Pass, ...]:
+    works = [one for one in plan.segments if one.kind in {SegmentKind.PASS, SegmentKind.LAP}]
+    return tuple(
+        Pass(one.number, one.points, closed=one.closed, order=order, lap=one.kind is SegmentKind.LAP)
+        for order, one in enumerate(works)
+    )
+
+
+def _entrance(frame: FieldFrame, field: FieldDocument) -> tuple[float, float] | None:
+    if field.entrance is None:
+        return None
+    longitude, latitude = field.entrance
+    return frame.east_north_from_degrees(latitude, longitude)
+
+
+def _read_only(points: FloatArray) -> FloatArray:
+    held = np.ascontiguousarray(points)
+    held.setflags(write=False)
+    return held
