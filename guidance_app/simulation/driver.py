@@ -93,7 +93,7 @@ class Driver:
     An ``endless`` driver begins again after the last stretch, which must lead to the first one's beginning.
     """
 
-    def __init__(  # noqa: PLR0913 - who, with what, where and how: each is given once
+    def __init__(
         self,
         model: TractorModel,
         stretches: Sequence[Stretch],

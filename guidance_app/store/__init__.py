@@ -1,7 +1,7 @@
 """Documents to files and back: found by name, written whole, never overwritten unseen, backed up as one zip."""
 
 from guidance_app.store.documents_folder import Named, Removed, Store, StoreConflictError
-from guidance_app.store.files import StoreError
+from guidance_app.store.files import StoreError, write_file
 from guidance_app.store.folders import SAMPLE_RECORDING, copy_sample, data_folder, sample_folder
 from guidance_app.store.jobs import field_from_file, load_job
 from guidance_app.store.reading import Problem, Stored
@@ -20,4 +20,5 @@ __all__ = [
     "field_from_file",
     "load_job",
     "sample_folder",
+    "write_file",
 ]

@@ -95,6 +95,12 @@ class Store:
         with self._lock.writing():
             return self._save(document, expected)
 
+    def replace(self, document: Named | Settings) -> str:
+        """Stores the document whatever was there, and gives its revision. Not for what a person may have changed."""
+        with self._lock.writing():
+            current = self._current(document)
+            return self._save(document, current.revision if current is not None else None)
+
     def copy(self, kind: type[N], name: str, new_name: str, field: str | None = None) -> str:
         """Stores the same document under a new name and gives its revision. Raises ``StoreError``."""
         return self.save(_renamed(self.load(kind, name, field).document, new_name))

@@ -26,6 +26,7 @@ __all__ = [
     "safe_stem",
     "why",
     "write_atomically",
+    "write_file",
 ]
 
 LOCK_NAME = ".lock"
@@ -110,6 +111,12 @@ def write_atomically(path: Path, content: bytes) -> str:
         msg = f"{path} cannot be written: {why(error)}"
         raise StoreError(msg) from error
     return revision_of(content)
+
+
+def write_file(root: Path, path: Path, content: bytes) -> str:
+    """Writes a file below the data folder ``root``, whole or not at all, and gives its revision."""
+    with FolderLock(root).writing():
+        return write_atomically(path, content)
 
 
 def move(source: Path, target: Path) -> None:

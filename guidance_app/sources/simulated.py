@@ -1,0 +1,200 @@
+"""``sim:``, a receiver on a tractor that drives the sample field over and over.
+
+It is a receiver like any other: what comes out are the bytes of its sentences, an epoch a chunk. Options follow a
+question mark: ``sim:?rate=10&decimals=7&seed=3&speed=8``. Work without an end, it makes each epoch when it is taken.
+"""
+
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from urllib.parse import parse_qsl
+
+import numpy as np
+
+from guidance_app.angles import heading_between, yaw_from_heading
+from guidance_app.boundary import frame_of, polygon_in
+from guidance_app.documents import Job
+from guidance_app.geodesy import FieldFrame
+from guidance_app.guidance.planning import plan_operation, request_from_documents
+from guidance_app.guidance.room import Room
+from guidance_app.guidance.turns import Leg, Turner
+from guidance_app.model import Chunk, FloatArray, Segment, SegmentKind, SourceUp
+from guidance_app.simulation.driver import DriverSettings
+from guidance_app.simulation.job import JobSettings, simulated_epochs
+from guidance_app.simulation.receiver import SENTENCES, ReceiverSettings
+from guidance_app.simulation.sample import sample_job
+from guidance_app.sources import SourceError
+
+__all__ = ["SampleDrive", "SimulatedOptions", "SimulatedSource", "open_simulated", "sample_drive"]
+
+KMH = 1 / 3.6
+RATES = (1, 2, 5, 10, 25, 50)
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedOptions:
+    """What may be asked of ``sim:``. ``rate`` in Hz, ``decimals`` of a minute, working ``speed`` in km/h."""
+
+    rate: int = 5
+    decimals: int = 4
+    seed: int = 1
+    speed_kmh: float = 9.0
+    sentences: tuple[str, ...] = ("GGA", "RMC", "VTG")
+
+    @property
+    def job_settings(self) -> JobSettings:
+        """The same for the simulation."""
+        return JobSettings(
+            driver=DriverSettings(work_speed=self.speed_kmh * KMH),
+            receiver=ReceiverSettings(rate=self.rate, decimals=self.decimals, sentences=self.sentences),
+            stand_s=5.0,
+            start_right=0.5,
+            endless=True,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedSource:
+    """An endless receiver. It gives its chunks as fast as they are taken; their times are those of the epochs."""
+
+    options: SimulatedOptions
+    description: str = "simulated receiver on the sample field"
+    duration: float | None = None
+    live: bool = field(default=False, init=False)
+
+    def events(self, stop: threading.Event) -> Iterator[Chunk | SourceUp]:
+        """``SourceUp``, then one chunk an epoch until ``stop`` is set."""
+        yield SourceUp(0.0, self.description)
+        job = sample_job()
+        drive = sample_drive(job)
+        epochs = simulated_epochs(
+            (*drive.passes, *drive.way_back),
+            (job.tractor, job.implement),
+            drive.frame,
+            self.options.job_settings,
+            np.random.default_rng(self.options.seed),
+        )
+        for epoch in epochs:
+            if stop.is_set():
+                return
+            yield Chunk(epoch.t, epoch.data)
+
+
+def open_simulated(uri: str) -> SimulatedSource:
+    """The source of a ``sim:`` URI. Raises ``SourceError`` for an option or a value that is not possible."""
+    _, _, rest = uri.partition(":")
+    place, _, query = rest.partition("?")
+    if place.strip("/"):
+        msg = f"'{uri}': after sim: come only options, as in sim:?rate=5&decimals=4"
+        raise SourceError(msg)
+    chosen: dict[str, object] = {}
+    for name, text in parse_qsl(query, keep_blank_values=True):
+        option = _OPTIONS.get(name)
+        if option is None:
+            msg = f"'{uri}': '{name}' is no option of sim:; there are {', '.join(_OPTIONS)}"
+            raise SourceError(msg)
+        if option.member in chosen:
+            msg = f"'{uri}': '{name}' is given twice"
+            raise SourceError(msg)
+        try:
+            chosen[option.member] = option.read(text)
+        except ValueError as error:
+            msg = f"'{uri}': {name} is {text!r}, but {option.rule}"
+            raise SourceError(msg) from error
+    return SimulatedSource(SimulatedOptions(**chosen))  # type: ignore[arg-type] # each reader gives its member's type
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SampleDrive:
+    """The sample field as it is driven: its frame, and the plan's passes with the turns between them.
+
+    ``way_back`` leads from the last pass's end to the first one's start.
+    """
+
+    frame: FieldFrame
+    passes: tuple[Segment, ...]
+    way_back: tuple[Segment, ...]
+
+
+def sample_drive(job: Job) -> SampleDrive:
+    """The drive of the sample's documents, planned from the field's entrance as a session plans it."""
+    if job.field is None or job.field.entrance is None:
+        msg = "the sample needs a field with an entrance"
+        raise SourceError(msg)
+    frame = frame_of(job.field.boundary)
+    polygon = polygon_in(frame, job.field.boundary)
+    longitude, latitude = job.field.entrance
+    start = frame.east_north_from_degrees(latitude, longitude)
+    request = request_from_documents(job.tractor, job.implement, job.operation, start)
+    segments = plan_operation(polygon, request).segments
+    places = [place for place, segment in enumerate(segments) if segment.kind is SegmentKind.PASS]
+    passes = segments[places[0] : places[-1] + 1]
+    end, begin = passes[-1].points, passes[0].points
+    turner = Turner(Room(polygon, request.body), request)
+    turn = turner.turns(_pose(end[-2], end[-1], end[-1]), _pose(begin[0], begin[1], begin[0]))[0]
+    return SampleDrive(frame, passes, tuple(_transfer(leg, passes[0].number) for leg in turn.legs))
+
+
+def _transfer(leg: Leg, number: int) -> Segment:
+    length = float(np.hypot(*np.diff(leg.points, axis=0).T).sum())
+    return Segment(SegmentKind.TRANSFER, number, leg.points, implement_down=False, length=length, reverse=leg.reverse)
+
+
+def _pose(before: FloatArray, after: FloatArray, at: FloatArray) -> FloatArray:
+    """Shape (1, 3): east, north and yaw at ``at`` on the way from ``before`` to ``after``."""
+    heading = heading_between((float(before[0]), float(before[1])), (float(after[0]), float(after[1])))
+    return np.array([[at[0], at[1], yaw_from_heading(heading)]])
+
+
+# --- options ---------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Option:
+    member: str
+    read: Callable[[str], object]
+    rule: str
+
+
+def _rate(text: str) -> int:
+    return _within(int(text), RATES)
+
+
+def _decimals(text: str) -> int:
+    return _within(int(text), range(2, 10))
+
+
+def _seed(text: str) -> int:
+    return _within(int(text), range(2**32))
+
+
+def _within(value: int, possible: tuple[int, ...] | range) -> int:
+    if value not in possible:
+        raise ValueError(value)
+    return value
+
+
+def _speed(text: str) -> float:
+    value = float(text)
+    if not 2 <= value <= 15:
+        raise ValueError(value)
+    return value
+
+
+def _sentences(text: str) -> tuple[str, ...]:
+    names = tuple(dict.fromkeys(text.upper().split(",")))
+    if "GGA" not in names or not set(names) <= set(SENTENCES):
+        raise ValueError(text)
+    return names
+
+
+_OPTIONS: Mapping[str, _Option] = MappingProxyType(
+    {
+        "rate": _Option("rate", _rate, f"it is one of {', '.join(map(str, RATES))} Hz"),
+        "decimals": _Option("decimals", _decimals, "it is a number of decimals of a minute from 2 to 9"),
+        "seed": _Option("seed", _seed, "it is a whole number from 0"),
+        "speed": _Option("speed_kmh", _speed, "it is a working speed from 2 to 15 km/h"),
+        "sentences": _Option("sentences", _sentences, f"it is GGA and any of {', '.join(SENTENCES[1:])}, with commas"),
+    }
+)
