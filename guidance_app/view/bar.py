@@ -322,7 +322,6 @@ def style_json(settings: Settings, look_ahead_s: float) -> str:
     style = {
         "speed": speed_unit(settings.units),
         "zones": lamp_zones(settings.light_bar_steps),
-        "steps": [offset_text(step, settings.units) for step in settings.light_bar_steps],
         "guided": "implement" if settings.guide_implement else "tractor",
         "ahead": f"{look_ahead_s:g} s",
         "sounds": settings.sounds,

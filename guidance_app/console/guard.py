@@ -1,0 +1,134 @@
+"""What stands around the whole front: nothing of it is reached without passing here. The rules are in ``access.py``."""
+
+import html
+from collections.abc import Mapping
+from urllib.parse import parse_qs
+
+from starlette.datastructures import MutableHeaders
+from starlette.requests import HTTPConnection, Request
+from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from guidance_app.console.access import Admitted, Door, Names, Refused, Wait, foreign
+from guidance_app.console.front import Asset
+
+__all__ = ["Guard"]
+
+PIN_PAGE = "pin.html"
+PIN_PATH = "/pin"
+OPEN_FILES = frozenset({"pin.css", "pin.js", "icon.svg", "icon-192.png", "icon-512.png", "manifest.webmanifest"})
+"""What the PIN page needs. A browser asks for manifest and icons without the cookie."""
+LONGEST_FORM = 64
+ENTER = (
+    '<!doctype html><meta charset="utf-8"><title>Guidance</title><meta http-equiv="refresh" content="0;url=/">'
+    '<p><a href="/">Open the console</a></p>'
+)
+"""After the PIN in an address: the browser goes on by itself, so that the next request counts as our own page's."""
+
+ON_EVERY_RESPONSE = {
+    "Content-Security-Policy": (
+        "default-src 'self' data: blob: 'unsafe-inline' 'unsafe-eval' 'wasm-unsafe-eval'; "
+        "frame-ancestors 'none'; base-uri 'none'; form-action 'self'; object-src 'none'"
+    ),
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+    "Referrer-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+}
+"""The page is one file of inline script and compiled code; beyond that it may reach this console and nothing else."""
+
+
+class Guard:
+    """Lets through to ``app`` what comes from our own page and, on a network, from a browser that has shown the PIN."""
+
+    def __init__(self, app: ASGIApp, door: Door, files: Mapping[str, Asset], names: Names, cookie: str) -> None:
+        self._app = app
+        self._door = door
+        self._files = files
+        self._names = names
+        self._cookie = cookie
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """One request or one socket."""
+        if scope["type"] == "lifespan":
+            await self._app(scope, receive, send)
+            return
+        socket = scope["type"] == "websocket"
+        visitor = HTTPConnection(scope)
+        why = foreign(visitor.headers, self._names, socket=socket)
+        admitted = self._door.admits(visitor.cookies.get(self._cookie))
+        if socket:
+            if why is None and admitted:
+                await self._app(scope, receive, send)
+            else:
+                await send({"type": "websocket.close", "code": 1008})
+            return
+        send = _with_headers(send)
+        if why is not None:
+            await PlainTextResponse(f"Refused: {why}.\n", 403)(scope, receive, send)
+        elif admitted and scope["path"] != PIN_PATH:
+            await self._app(scope, receive, send)
+        else:
+            response = await self._at_the_door(Request(scope, receive))
+            await response(scope, receive, send)
+
+    async def _at_the_door(self, request: Request) -> Response:
+        """What a browser gets that has not shown the PIN."""
+        path = request.url.path
+        name = path.removeprefix("/static/")
+        if name != path and name in OPEN_FILES and name in self._files:
+            return self._files[name].response(request)
+        if path == PIN_PATH:
+            if request.method != "POST":
+                return RedirectResponse("/", 303)
+            return self._knock(request, await _posted_pin(request))
+        if path != "/":
+            return PlainTextResponse("Show the PIN first.\n", 401)
+        if "pin" in request.query_params:
+            return self._knock(request, request.query_params["pin"])
+        return self._pin_page("", 0.0, 401)
+
+    def _knock(self, request: Request, pin: str) -> Response:
+        match self._door.knock("" if request.client is None else request.client.host, pin.strip()):
+            case Admitted(token):
+                entered = HTMLResponse(ENTER, headers={"Cache-Control": "no-store", "Referrer-Policy": "no-referrer"})
+                entered.set_cookie(
+                    self._cookie, token, httponly=True, samesite="strict", secure=request.url.scheme == "https"
+                )
+                return entered
+            case Refused(0, seconds):
+                return self._pin_page("Wrong PIN.", seconds, 401)
+            case Refused(1, _):
+                return self._pin_page("Wrong PIN. 1 try left.", 0.0, 401)
+            case Refused(tries, _):
+                return self._pin_page(f"Wrong PIN. {tries} tries left.", 0.0, 401)
+            case Wait(seconds):
+                return self._pin_page("Too many wrong PINs.", seconds, 429)
+
+    def _pin_page(self, message: str, wait: float, status: int) -> Response:
+        page = self._files[PIN_PAGE].body.decode()
+        page = page.replace("{message}", html.escape(message)).replace("{wait}", f"{max(0.0, wait):.0f}")
+        headers = {"Cache-Control": "no-store"} | ({"Retry-After": f"{wait + 1:.0f}"} if wait else {})
+        return HTMLResponse(page, status, headers)
+
+
+async def _posted_pin(request: Request) -> str:
+    """The form's one field; a body that is longer than any PIN is not read to its end."""
+    body = b""
+    async for part in request.stream():
+        body += part
+        if len(body) > LONGEST_FORM:
+            return ""
+    return parse_qs(body.decode("ascii", "replace")).get("pin", [""])[0]
+
+
+def _with_headers(send: Send) -> Send:
+    async def send_with_headers(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            headers = MutableHeaders(scope=message)
+            for name, value in ON_EVERY_RESPONSE.items():
+                headers.setdefault(name, value)
+        await send(message)
+
+    return send_with_headers

@@ -1,0 +1,176 @@
+"""The console, put together: viser inside, the screen on it, the front with page, light bar and access around it."""
+
+import contextlib
+import socket
+import threading
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import uvicorn
+import viser
+
+from guidance_app.console.access import Door, Names, new_pin
+from guidance_app.console.address import (
+    ALL_INTERFACES,
+    LOOPBACK,
+    ConsoleError,
+    bind,
+    is_loopback,
+    lan_addresses,
+    own_names,
+)
+from guidance_app.console.front import Download, front_app, own_files, static_folder
+from guidance_app.console.guard import Guard
+from guidance_app.console.inner import InnerViser
+from guidance_app.console.live import LiveHub, LiveSession
+from guidance_app.console.qr import terminal_qr
+
+__all__ = ["Console", "ConsoleError", "Download", "Screen", "ScreenFactory"]
+
+DEFAULT_PORT = 8080
+"""Where the console is found when nothing else is asked for."""
+START_S = 15.0
+STOP_S = 10.0
+GRACE_S = 3
+BIGGEST_MESSAGE = 64 * 1024 * 1024
+"""The largest message from a browser: viser's own limit is 50 MB, and its upload button splits files."""
+
+
+class Screen(Protocol):
+    """Scene and panels on viser's server."""
+
+    def start(self) -> None:
+        """Begins to draw."""
+        ...
+
+    def close(self) -> None:
+        """Ends its threads."""
+        ...
+
+
+ScreenFactory = Callable[[viser.ViserServer, Any], Screen]
+
+
+class _Front(uvicorn.Server):
+    """uvicorn on a thread of its own, which tells when it is ready."""
+
+    def __init__(self, config: uvicorn.Config) -> None:
+        super().__init__(config)
+        self.ready = threading.Event()
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        self.ready.set()
+
+    def run_until_told(self, listener: socket.socket) -> None:
+        try:
+            self.run(sockets=[listener])
+        finally:
+            self.ready.set()
+
+    def end(self, thread: threading.Thread) -> None:
+        self.should_exit = True
+        thread.join(STOP_S)
+
+
+class Console:
+    """The console of one session in the browser.
+
+    Reached from this machine alone, or with ``lan`` from the network behind a PIN (six random digits unless ``pin``
+    names them). ``screen_factory`` makes scene and panels from viser's server and the session; ``host`` chooses one
+    interface instead of all. ``downloads`` may be filled at any time: what is in it leaves under ``/download/NAME``.
+    """
+
+    def __init__(
+        self,
+        session: LiveSession,
+        *,
+        host: str | None = None,
+        port: int = DEFAULT_PORT,
+        lan: bool = False,
+        pin: str | None = None,
+        screen_factory: ScreenFactory | None = None,
+    ) -> None:
+        if host is not None and not lan and not is_loopback(host):
+            msg = f"{host} is reached from the network; add --lan, so that a PIN stands before it."
+            raise ConsoleError(msg)
+        self._session = session
+        self._host = host or (ALL_INTERFACES if lan else LOOPBACK)
+        self._wanted_port = port
+        self._lan = lan
+        self._screen_factory = screen_factory or _real_screen
+        self._closing = contextlib.ExitStack()
+        self.pin = (pin or new_pin()) if lan else None
+        """What a browser must show; None without ``lan``."""
+        self.downloads: dict[str, Callable[[], Download | None]] = {}
+        """What makes each file that leaves by HTTP; called off the front's loop."""
+        self.hub = LiveHub(session)
+        """The light bar's feed, with the round trips it has measured."""
+        self.addresses: tuple[str, ...] = ()
+        """Where browsers find the console, the best first; empty until it has started."""
+
+    def start(self) -> str:
+        """Opens everything and gives the address for a browser. Raises ``ConsoleError`` when that cannot be."""
+        with contextlib.ExitStack() as opened:
+            listener = opened.enter_context(bind(self._host, self._wanted_port))
+            port = listener.getsockname()[1]
+            inner = InnerViser(label="Guidance")
+            opened.callback(inner.close)
+            screen = self._screen_factory(inner.server, self._session)
+            screen.start()
+            opened.callback(screen.close)
+            self._serve(self._application(inner, port), listener, opened)
+            self._closing = opened.pop_all()
+        self.addresses = tuple(f"http://{host}:{port}" for host in self._reachable())
+        return self.addresses[0]
+
+    def close(self) -> None:
+        """Ends every socket and thread; again is harmless."""
+        self._closing.close()
+
+    def invitation(self, *, colour: bool = True) -> str:
+        """What to print: the address, and on a network the PIN and a QR code that holds both."""
+        if self.pin is None:
+            return f"Open {self.addresses[0]} in a browser on this machine."
+        others = "".join(f"\n  or {address}" for address in self.addresses[1:])
+        link = f"{self.addresses[0]}/?pin={self.pin}"
+        return f"On the tablet open {self.addresses[0]}{others}\nPIN {self.pin}\n\n{terminal_qr(link, colour=colour)}"
+
+    def _application(self, inner: InnerViser, port: int) -> Guard:
+        files = own_files(static_folder())
+        app = front_app(files, self.hub, inner.uri, inner.headers, self.downloads)
+        names = Names(own_names() | {self._host, LOOPBACK, "::1"}, any_number=self._lan)
+        return Guard(app, Door(self.pin), files, names, cookie=f"guidance_{port}")
+
+    def _serve(self, app: Guard, listener: socket.socket, opened: contextlib.ExitStack) -> None:
+        front = _Front(
+            uvicorn.Config(
+                app,
+                log_config=None,
+                log_level="error",
+                access_log=False,
+                server_header=False,
+                lifespan="on",
+                ws="websockets-sansio",
+                ws_max_size=BIGGEST_MESSAGE,
+                ws_per_message_deflate=False,
+                timeout_graceful_shutdown=GRACE_S,
+            )
+        )
+        thread = threading.Thread(target=front.run_until_told, args=(listener,), name="console-front", daemon=True)
+        thread.start()
+        opened.callback(front.end, thread)
+        if not front.ready.wait(START_S) or not front.started:
+            msg = "The web server did not start; look at the lines above for the reason."
+            raise ConsoleError(msg)
+
+    def _reachable(self) -> tuple[str, ...]:
+        if self._host != ALL_INTERFACES:
+            return (self._host,)
+        return lan_addresses() or (f"{socket.gethostname()}.local",)
+
+
+def _real_screen(server: viser.ViserServer, session: Any) -> Screen:
+    from guidance_app.console.screen import Screen as RealScreen  # noqa: PLC0415 - a console may come with another one
+
+    return RealScreen(server, session)
