@@ -3,6 +3,7 @@
 import argparse
 import contextlib
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,15 +16,14 @@ __all__ = ["serve"]
 
 def serve(session: LiveSession | ReplaySession, arguments: argparse.Namespace, data: Path, opening: str) -> int:
     """Opens the console on a session and stays until Ctrl-C or a termination signal. Raises ``ConsoleError``."""
-    host = "0.0.0.0" if arguments.lan else "127.0.0.1"  # noqa: S104 - only when --lan asks for it, and behind a PIN
-    console = Console(session, host=host, port=arguments.port, lan=arguments.lan)
+    console = Console(session, port=arguments.port, lan=arguments.lan)
     print(opening)
     print(f"data folder: {data}")
-    address = console.start()
+    console.start()
     try:
         session.start()
-        print(f"the console is open at {address}", flush=True)
-        print("stop it with Ctrl-C", flush=True)
+        print(console.invitation(colour=sys.stdout.isatty()))
+        print("Stop it with Ctrl-C.", flush=True)
         with _until_stopped() as stopped:
             stopped.wait()
     finally:

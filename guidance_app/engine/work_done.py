@@ -94,8 +94,8 @@ class WorkDone:
             self._show_around_target()
         self._switch = self._switch.after(pose, self._guidance, reported)
         number = None if self._guidance is None else self._guidance.target.number
-        self._coverage.step(implement, pose.t, down=self._switch.down, pass_number=number)
-        self._track.step(pose)
+        self._coverage.step(implement, pose.t, self._switch.down, number)
+        self._track.step(pose.t, pose.east, pose.north, pose.heading)
 
     def command(self, command: Command, arrival: float) -> None:
         """The driver's wish. Without a line, wishes about lines have nothing to act on and change nothing."""
