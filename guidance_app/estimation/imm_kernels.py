@@ -11,54 +11,39 @@ import numba
 import numpy as np
 
 from guidance_app.estimation.kernels import (
-    CURVATURE,
     DRIFT_EAST,
-    DRIFT_NORTH,
     EAST,
-    GYRO_BIAS,
     HEADING,
     NORTH,
-    SLIP,
-    SPEED,
     STATES,
     gaussian_update,
     interval_update,
     predict,
     robust_update,
 )
+from guidance_app.estimation.observation_kernels import (
+    CELL_EAST,
+    CELL_NORTH,
+    GATE,
+    GYRO,
+    MEASUREMENTS,
+    STANDING,
+    VELOCITY_EAST,
+    WHITE,
+    Z_EAST,
+    Z_NORTH,
+    antenna,
+    observe,
+)
 from guidance_app.model import FloatArray
 
 MODELS = 3
 
-(
-    Z_EAST,
-    Z_NORTH,
-    CELL_EAST,
-    CELL_NORTH,
-    WHITE,
-    ARM_FORWARD,
-    ARM_RIGHT,
-    GATE,
-    SPEED_READING,
-    COURSE_READING,
-    SPEED_SD,
-    GYRO_READING,
-    GYRO_SD,
-    HEADING_READING,
-    HEADING_SD,
-    STANDING_SD,
-) = range(16)
-"""The reading vector. A standard deviation of zero says that the sensor said nothing this time."""
-READINGS = 16
-
-WITH_POSITION, WITHOUT_POSITION, REOPENED = range(3)
-"""How the position is taken: through the gate; not at all; or believed whatever the distance."""
+WITH_POSITION, REOPENED = range(2)
+"""How the position is taken: through the gate, or believed whatever the distance."""
 
 Belief = tuple[FloatArray, FloatArray, FloatArray]
 Motion = tuple[FloatArray, FloatArray, FloatArray]
-
-NO_COURSE = 1000.0
-"""In place of a course: the receiver gave a speed alone."""
 
 
 @numba.njit(cache=True)
@@ -87,70 +72,24 @@ def _mix(x: FloatArray, p: FloatArray, w: FloatArray, moves: FloatArray, mixed: 
 
 
 @numba.njit(cache=True)
-def _antenna_row(x: FloatArray, z: FloatArray, axis: int, h: FloatArray) -> float:
-    """Where the antenna should be read on this axis; ``h`` becomes the derivative of that."""
-    sine = math.sin(x[HEADING])
-    cosine = math.cos(x[HEADING])
-    h[:] = 0.0
-    h[axis] = 1.0
-    if h.size > DRIFT_EAST:
-        h[DRIFT_EAST + axis] = 1.0
-    if axis == EAST:
-        h[HEADING] = z[ARM_FORWARD] * cosine - z[ARM_RIGHT] * sine
-        return float(x[EAST] + x[DRIFT_EAST] + z[ARM_FORWARD] * sine + z[ARM_RIGHT] * cosine)
-    h[HEADING] = -z[ARM_FORWARD] * sine - z[ARM_RIGHT] * cosine
-    return float(x[NORTH] + x[DRIFT_NORTH] + z[ARM_FORWARD] * cosine - z[ARM_RIGHT] * sine)
-
-
-@numba.njit(cache=True)
-def _velocity_row(x: FloatArray, z: FloatArray, axis: int, h: FloatArray) -> float:
-    """How fast the antenna should be read to move along this axis; ``h`` becomes the derivative of that."""
-    sine = math.sin(x[HEADING])
-    cosine = math.cos(x[HEADING])
-    k = x[CURVATURE]
-    u = x[SPEED]
-    along = sine if axis == EAST else cosine
-    across = cosine if axis == EAST else -sine
-    swing = z[ARM_FORWARD] * across - z[ARM_RIGHT] * along
-    h[:] = 0.0
-    h[SPEED] = along + k * swing
-    h[CURVATURE] = u * swing
-    h[HEADING] = u * across + u * k * (-z[ARM_FORWARD] * along - z[ARM_RIGHT] * across)
-    return float(u * (along + k * swing))
-
-
-@numba.njit(cache=True)
 def _sensors(x: FloatArray, p: FloatArray, n: int, z: FloatArray) -> float:
-    """Takes everything but the position, in place; gives the log likelihood."""
+    """Takes everything but the position, in place; gives the log likelihood.
+
+    Velocity and heading sensor are doubted when far off. The gyro is not: at the start of a turn it is the first to
+    know, and doubting it there costs 2 degrees.
+    """
     h = np.zeros(n)
     likelihood = 0.0
-    if z[SPEED_SD] > 0.0 and z[COURSE_READING] < NO_COURSE:
-        for axis in range(2):
-            read = z[SPEED_READING] * (math.sin(z[COURSE_READING]) if axis == EAST else math.cos(z[COURSE_READING]))
-            expected = _velocity_row(x, z, axis, h)
-            likelihood += robust_update(x, p, h, read - expected, z[SPEED_SD] ** 2)
-    elif z[SPEED_SD] > 0.0:
-        h[SPEED] = 1.0
-        read = math.copysign(z[SPEED_READING], x[SPEED])
-        likelihood += robust_update(x, p, h, read - x[SPEED], z[SPEED_SD] ** 2)
-    if z[STANDING_SD] > 0.0:
-        h[:] = 0.0
-        h[SPEED] = 1.0
-        gaussian_update(x, p, h, -x[SPEED], z[STANDING_SD] ** 2)
-    if z[GYRO_SD] > 0.0:
-        h[:] = 0.0
-        h[SPEED] = x[CURVATURE]
-        h[CURVATURE] = x[SPEED]
-        h[GYRO_BIAS] = 1.0
-        expected = x[SPEED] * x[CURVATURE] + x[GYRO_BIAS]
-        likelihood += robust_update(x, p, h, z[GYRO_READING] - expected, z[GYRO_SD] ** 2)
-    if z[HEADING_SD] > 0.0:
-        h[:] = 0.0
-        h[HEADING] = 1.0
-        h[SLIP] = 1.0
-        away = z[HEADING_READING] - x[HEADING] - x[SLIP]
-        away = (away + math.pi) % (2.0 * math.pi) - math.pi
-        likelihood += robust_update(x, p, h, away, z[HEADING_SD] ** 2)
+    for which in range(VELOCITY_EAST, MEASUREMENTS):
+        innovation, variance = observe(x, z, which, h)
+        if variance == 0.0:
+            continue
+        if which == GYRO:
+            likelihood += gaussian_update(x, p, h, innovation, variance)
+        elif which == STANDING:
+            gaussian_update(x, p, h, innovation, variance)
+        else:
+            likelihood += robust_update(x, p, h, innovation, variance)
     return likelihood
 
 
@@ -160,9 +99,8 @@ def _position(x: FloatArray, p: FloatArray, n: int, z: FloatArray) -> float:
     h = np.zeros(n)
     likelihood = 0.0
     for axis in range(2):
-        expected = _antenna_row(x, z, axis, h)
-        innovation = z[Z_EAST + axis] - expected
-        likelihood += interval_update(x, p, h, innovation, z[CELL_EAST + axis], z[WHITE] ** 2)
+        innovation, variance = observe(x, z, axis, h)
+        likelihood += interval_update(x, p, h, innovation, z[CELL_EAST + axis], variance)
     return likelihood
 
 
@@ -171,8 +109,8 @@ def _distance(x: FloatArray, p: FloatArray, n: int, z: FloatArray, innovation: F
     """Chi-square distance of the fix from a predicted state; ``innovation`` becomes (east, north)."""
     he = np.zeros(n)
     hn = np.zeros(n)
-    innovation[0] = z[Z_EAST] - _antenna_row(x, z, EAST, he)
-    innovation[1] = z[Z_NORTH] - _antenna_row(x, z, NORTH, hn)
+    innovation[0] = z[Z_EAST] - antenna(x, z, EAST, he)
+    innovation[1] = z[Z_NORTH] - antenna(x, z, NORTH, hn)
     ee = z[CELL_EAST] ** 2 / 12.0 + z[WHITE] ** 2
     nn = z[CELL_NORTH] ** 2 / 12.0 + z[WHITE] ** 2
     en = 0.0

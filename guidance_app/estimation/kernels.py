@@ -145,7 +145,12 @@ def add_process_noise(x: FloatArray, p: FloatArray, dt: float, model: FloatArray
     p[SPEED, SPEED] += q * dt
     moving = min(1.0, abs(x[SPEED]) / 0.3)
     p[HEADING, HEADING] += (common[HEADING_WALK] * moving) ** 2 * dt
-    p[CURVATURE, CURVATURE] += model[CURVATURE_SD] ** 2 * -math.expm1(-2.0 * dt / model[MEMORY])
+    bend = model[CURVATURE_SD] ** 2 * -math.expm1(-2.0 * dt / model[MEMORY])
+    way = x[SPEED] * dt
+    p[CURVATURE, CURVATURE] += bend
+    p[HEADING, CURVATURE] += 0.5 * way * bend
+    p[CURVATURE, HEADING] += 0.5 * way * bend
+    p[HEADING, HEADING] += way * way * bend / 3.0
     p[GYRO_BIAS, GYRO_BIAS] += common[GYRO_WALK] ** 2 * dt
     p[SLIP, SLIP] += common[SLIP_SD] ** 2 * -math.expm1(-2.0 * dt / common[SLIP_TIME])
     fresh = common[DRIFT_SD] ** 2 * -math.expm1(-2.0 * dt / common[DRIFT_TIME])

@@ -30,7 +30,6 @@ from guidance_app.angles import wrap_2pi
 from guidance_app.estimation.filter import AdaptiveSettings, Filter, FilterSettings, ModelSet, Start
 from guidance_app.estimation.imm_kernels import (
     MODELS,
-    NO_COURSE,
     REOPENED,
     WITH_POSITION,
     Belief,
@@ -50,6 +49,7 @@ from guidance_app.estimation.kernels import (
     SPEED,
     STATES,
 )
+from guidance_app.estimation.readings import common_noise, readings, slip_of
 from guidance_app.estimation.receiver_noise import DEFAULT_CELL, ReceiverNoise, fix_covariance, noise_of
 from guidance_app.estimation.reference_point import offset_point
 from guidance_app.estimation.starting import Departure, Waiting
@@ -67,10 +67,6 @@ HEADING_LOST = math.radians(35)
 """With a heading less certain than this the screen says that the direction is unknown."""
 STANDING_SPEED = 0.06
 GYRO_BIAS_SD = 0.01
-SLIP_SD = math.radians(1.5)
-SLIP_TIME = 30.0
-SENSOR_TIME = 200.0
-"""Correlation time of a drifting heading sensor, in seconds."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -193,7 +189,7 @@ def _started(
     for j, model in enumerate((models.straight, models.gentle, models.turn)):
         p[j, CURVATURE, CURVATURE] = min(model.curvature, 0.1) ** 2
     p[:, GYRO_BIAS, GYRO_BIAS] = gyro[1] ** 2
-    p[:, SLIP, SLIP] = _slip(z)[0] ** 2
+    p[:, SLIP, SLIP] = slip_of(z)[0] ** 2
     n = _live(z, noise, 0)
     if n == STATES:
         for drift, axis in ((DRIFT_EAST, EAST), (DRIFT_NORTH, NORTH)):
@@ -229,9 +225,9 @@ def _advanced(state: _State, z: Measurement, noise: ReceiverNoise, settings: Ada
     still = state.still.after(z, noise.white)
     bound = still.speed_bound(z, noise.white)
     models = _models(settings, z)
-    readings = _readings(z, noise, settings, bound)
-    motion = (_model_rows(models), _moves(models, round(dt, 4)), _common(z, noise, settings))
-    belief, rejected = _corrected(state, dt, readings, motion)
+    epoch = readings(z, noise, settings, bound)
+    motion = (_model_rows(models), _moves(models, round(dt, 4)), common_noise(z, noise, settings))
+    belief, rejected = _corrected(state, dt, epoch, motion)
     belief, backed = _turned_round(belief, z, state.backed, dt)
     pose = _pose(z, belief, state.n)
     standing = bound is not None and abs(pose.speed) < STANDING_SPEED
@@ -240,20 +236,20 @@ def _advanced(state: _State, z: Measurement, noise: ReceiverNoise, settings: Ada
 
 
 def _corrected(
-    state: _State, dt: float, readings: FloatArray, motion: Motion
+    state: _State, dt: float, epoch: FloatArray, motion: Motion
 ) -> tuple[Belief, tuple[tuple[float, float], ...]]:
     """The new belief, and the innovations of the fixes rejected in a row until now."""
-    belief, report = imm_step(state.belief, state.n, dt, readings, WITH_POSITION, motion)
+    belief, report = imm_step(state.belief, state.n, dt, epoch, WITH_POSITION, motion)
     if report[0] == 1.0:
         return belief, ()
     rejected = (*state.rejected, (float(report[2]), float(report[3])))
     stepped = _step_of(rejected)
     if stepped is not None and state.n == STATES:
-        shifted, report = imm_step(_shifted(state.belief, stepped), state.n, dt, readings, WITH_POSITION, motion)
+        shifted, report = imm_step(_shifted(state.belief, stepped), state.n, dt, epoch, WITH_POSITION, motion)
         if report[0] == 1.0:
             return shifted, ()
     if stepped is not None or len(rejected) > DEAD_RECKONED:
-        belief, _ = imm_step(state.belief, state.n, dt, readings, REOPENED, motion)
+        belief, _ = imm_step(state.belief, state.n, dt, epoch, REOPENED, motion)
         return belief, ()
     return belief, rejected
 
@@ -278,7 +274,7 @@ def _with_drift(state: _State, z: Measurement, noise: ReceiverNoise) -> _State:
         p[:, n:, :] = 0.0
         p[:, :, n:] = 0.0
     if state.n <= SLIP < n:
-        p[:, SLIP, SLIP] = _slip(z)[0] ** 2
+        p[:, SLIP, SLIP] = slip_of(z)[0] ** 2
     if n == STATES:
         p[:, DRIFT_EAST, DRIFT_EAST] = noise.drift**2
         p[:, DRIFT_NORTH, DRIFT_NORTH] = noise.drift**2
@@ -346,43 +342,6 @@ def _moves(models: ModelSet, dt: float) -> FloatArray:
     moves = np.array([[1 - a - c / 2, a, c / 2], [b, 1 - b - c, c], [0.3 * d, 0.7 * d, 1 - d]])
     moves = np.clip(moves, 1e-7, 1.0)
     return np.asarray(moves / moves.sum(axis=1, keepdims=True))
-
-
-def _slip(z: Measurement) -> tuple[float, float]:
-    """Standard deviation and correlation time of what lies between a heading sensor and the direction of travel."""
-    if z.heading_sigma is None:
-        return SLIP_SD, SLIP_TIME
-    return z.heading_sigma, SENSOR_TIME
-
-
-def _common(z: Measurement, noise: ReceiverNoise, settings: AdaptiveSettings) -> FloatArray:
-    slip_sd, slip_time = _slip(z)
-    return np.array([settings.gyro_walk, slip_sd, slip_time, noise.drift, noise.drift_time, settings.heading_walk])
-
-
-def _readings(z: Measurement, noise: ReceiverNoise, settings: AdaptiveSettings, bound: float | None) -> FloatArray:
-    """The epoch as the kernel takes it; see ``imm_kernels``."""
-    cell_east, cell_north = z.cell or (DEFAULT_CELL, DEFAULT_CELL)
-    return np.array(
-        [
-            z.east,
-            z.north,
-            cell_east,
-            cell_north,
-            noise.white,
-            z.antenna[0],
-            z.antenna[1],
-            settings.gate,
-            z.speed or 0.0,
-            NO_COURSE if z.course is None else z.course,
-            0.0 if z.speed is None else settings.velocity_noise,
-            z.yaw_rate or 0.0,
-            0.0 if z.yaw_rate is None else settings.gyro_noise,
-            z.heading or 0.0,
-            0.0 if z.heading is None else math.radians(settings.heading_noise_deg),
-            bound or 0.0,
-        ]
-    )
 
 
 def _pose(z: Measurement, belief: Belief, n: int) -> Pose:
