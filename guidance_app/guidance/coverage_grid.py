@@ -1,0 +1,194 @@
+"""Worked ground as bits of a turned grid, in tiles that exist only where work was done.
+
+The grid is turned against the first direction of work by atan(0.618), the slope that is worst approximated by
+fractions: along a strip's edge the cells are cut in all ways alike, so that counting centres is right on average,
+where a grid along the strips would be wrong by up to half a cell all the way. Copies share their tiles until one of
+them writes.
+"""
+
+import copy
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from guidance_app.guidance.coverage_kernels import (
+    FIELD,
+    GROUND_PLANES,
+    MAINLAND,
+    TILE,
+    WORDS,
+    WORK_PLANES,
+    Bits,
+    inside_of,
+    paint,
+    settle,
+)
+from guidance_app.model import FloatArray
+
+__all__ = ["CellCounts", "CoverageGrid", "Ground", "Patch"]
+
+TURN = math.atan((math.sqrt(5.0) - 1.0) / 2.0)
+"""Of the grid against the first direction of work."""
+
+TilePlace = tuple[int, int]
+"""Column and row of a tile."""
+
+Patch = tuple[FloatArray, tuple[TilePlace, ...]]
+"""A quadrilateral of shape (4, 2), in cells, and the tiles that it may touch."""
+
+CellCounts = tuple[int, int, int, int]
+"""New cells, newly twice, new in the field, new outside the mainland."""
+
+Area = shapely.Polygon | shapely.MultiPolygon
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ground:
+    """The areas that worked ground is told apart by; each may be unknown."""
+
+    field: Area | None
+    mainland: Area | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Axes:
+    """From east and north to cells, and the areas' edges in cells."""
+
+    east: float
+    north: float
+    per_metre_along: float
+    per_metre_across: float
+    field: FloatArray | None
+    mainland: FloatArray | None
+
+    @staticmethod
+    def along(east: float, north: float, heading: float, cell: float, ground: Ground) -> "_Axes":
+        turned = heading + TURN
+        bare = _Axes(east, north, math.sin(turned) / cell, math.cos(turned) / cell, None, None)
+        field, mainland = bare._edges(ground.field), bare._edges(ground.mainland)
+        return _Axes(east, north, bare.per_metre_along, bare.per_metre_across, field, mainland)
+
+    def cells(self, east: float, north: float) -> tuple[float, float]:
+        """Column and row, with fractions."""
+        away_east, away_north = east - self.east, north - self.north
+        return (
+            away_east * self.per_metre_along + away_north * self.per_metre_across,
+            away_east * self.per_metre_across - away_north * self.per_metre_along,
+        )
+
+    def _edges(self, area: Area | None) -> FloatArray | None:
+        """Shape (N, 4) of all rings, as ``inside_of`` takes them."""
+        if area is None:
+            return None
+        rings = [shapely.get_coordinates(ring) for part in shapely.get_parts(area) for ring in _rings(part)]
+        edges = []
+        for ring in rings:
+            corners = np.array([self.cells(east, north) for east, north in ring.tolist()])
+            edges.append(np.hstack([corners[:-1], corners[1:]]))
+        return np.ascontiguousarray(np.vstack(edges)) if edges else np.empty((0, 4))
+
+
+def _rings(part: shapely.Polygon) -> list[shapely.LinearRing]:
+    return [] if part.is_empty else [part.exterior, *part.interiors]
+
+
+@dataclass(slots=True, eq=False)
+class _Tile:
+    work: Bits
+    ground: Bits
+    x: int
+    y: int
+
+
+EVERYWHERE = np.full((GROUND_PLANES, TILE, WORDS), ~np.uint64(0), dtype=np.uint64)
+EVERYWHERE.setflags(write=False)
+
+
+class CoverageGrid:
+    """Marks quadrilaterals and counts; ``cells`` gives the cells of a position.
+
+    The first position asked for, with its heading, lays the grid.
+    """
+
+    def __init__(self, cell: float, ground: Ground) -> None:
+        self.cell = cell
+        self._ground = ground
+        self._axes: _Axes | None = None
+        self._tiles: dict[TilePlace, _Tile] = {}
+        self._own: set[TilePlace] = set()
+
+    def fork(self) -> "CoverageGrid":
+        """An independent copy that costs one copy of the table of tiles; from now on both copy a tile to write it."""
+        other = copy.copy(self)
+        other._tiles = dict(self._tiles)  # noqa: SLF001 - its own class, as in the line below
+        other._own = set()  # noqa: SLF001
+        self._own = set()
+        return other
+
+    def lay(self, east: float, north: float, heading: float) -> None:
+        """Lays the grid if it does not lie yet: origin and direction of work."""
+        if self._axes is None:
+            self._axes = _Axes.along(east, north, heading, self.cell, self._ground)
+
+    def cells(self, east: float, north: float) -> tuple[float, float]:
+        """Column and row of a position; only after ``lay``."""
+        assert self._axes is not None  # noqa: S101 - Coverage lays the grid with the first edge
+        return self._axes.cells(east, north)
+
+    @property
+    def tiles(self) -> int:
+        """How many tiles exist: 24 kB each, 40 kB where a boundary crosses."""
+        return len(self._tiles)
+
+    def patch(self, corners: FloatArray) -> Patch:
+        """A quadrilateral of shape (4, 2), in cells, ready to be painted and later settled."""
+        (x0, y0), (x1, y1), (x2, y2), (x3, y3) = corners.tolist()
+        west, east = int(min(x0, x1, x2, x3) // TILE), int(max(x0, x1, x2, x3) // TILE)
+        south, north = int(min(y0, y1, y2, y3) // TILE), int(max(y0, y1, y2, y3) // TILE)
+        if west == east and south == north:
+            return corners, ((west, south),)
+        return corners, tuple((x, y) for x in range(west, east + 1) for y in range(south, north + 1))
+
+    def paint(self, patch: Patch) -> CellCounts:
+        """Marks it as worked."""
+        corners, places = patch
+        fresh = twice = field = headland = 0
+        for place in places:
+            tile = self._tiles[place] if place in self._own else self._own_tile(place)
+            counts = paint(tile.work, tile.ground, tile.x, tile.y, corners)
+            fresh += counts[0]
+            twice += counts[1]
+            field += counts[2]
+            headland += counts[3]
+        return fresh, twice, field, headland
+
+    def settle(self, patch: Patch) -> None:
+        """From now on, work on it is a second time."""
+        corners, places = patch
+        for place in places:
+            tile = self._tiles[place] if place in self._own else self._own_tile(place)
+            settle(tile.work, tile.x, tile.y, corners)
+
+    def _own_tile(self, place: TilePlace) -> _Tile:
+        shared = self._tiles.get(place)
+        x, y = place[0] * TILE, place[1] * TILE
+        if shared is None:
+            work = np.zeros((WORK_PLANES, TILE, WORDS), dtype=np.uint64)
+            tile = _Tile(work, self._what_lies(x, y), x, y)
+        else:
+            tile = _Tile(shared.work.copy(), shared.ground, x, y)
+        self._tiles[place] = tile
+        self._own.add(place)
+        return tile
+
+    def _what_lies(self, x: int, y: int) -> Bits:
+        """Where field and mainland are not known, all is inside."""
+        assert self._axes is not None  # noqa: S101 - Coverage lays the grid with the first edge
+        ground = EVERYWHERE.copy()
+        for plane, edges in ((FIELD, self._axes.field), (MAINLAND, self._axes.mainland)):
+            if edges is not None:
+                ground[plane] = 0
+                inside_of(edges, x, y, ground[plane])
+        return EVERYWHERE if np.array_equal(ground, EVERYWHERE) else ground
