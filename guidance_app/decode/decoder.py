@@ -15,7 +15,6 @@ same times always give the same observations.
 """
 
 from collections import Counter
-from collections.abc import Mapping
 from dataclasses import replace
 
 from guidance_app.decode.clock import DayClock
@@ -76,12 +75,12 @@ class Decoder:
         self._attitude_valid = True
 
     @property
-    def rejected(self) -> Mapping[str, int]:
+    def rejected(self) -> Counter[str]:
         """How many lines and epochs were not believed, by reason."""
         return self._rejected
 
     @property
-    def kinds(self) -> Mapping[str, int]:
+    def kinds(self) -> Counter[str]:
         """How many sentences of each kind were decoded."""
         return self._kinds
 

@@ -234,7 +234,7 @@ def _timeline(data: bytes) -> tuple[Places, FloatArray]:
             places, seconds = _without_damaged(data, *_changes(places, seconds))
             return _line_starts(raw, places), _arrivals(seconds)
     lines = np.array([match.start() for match in _find_lines(data)], dtype=np.int64)
-    return lines, np.arange(len(lines)) * FIRST_INTERVAL
+    return lines, np.arange(len(lines), dtype=np.float64) * FIRST_INTERVAL
 
 
 def _times_of_positions(raw: Bytes) -> tuple[Places, FloatArray]:
