@@ -29,6 +29,7 @@ __all__ = [
     "ModelSet",
     "MotionModel",
     "QuantisationSettings",
+    "SmootherSettings",
     "Start",
 ]
 
@@ -179,6 +180,13 @@ class AdaptiveSettings(_Part):
     gate: float = quantity("Outlier gate", "chi-square of 2", 6, 40, 15, step=0.1)
 
 
+class SmootherSettings(_Part):
+    """The offline smoother: one motion model, for positions alone and with anything beside them."""
+
+    position: MotionModel = MotionModel(acceleration=0.088, curvature=0.036, memory=25.0)
+    sensors: MotionModel = MotionModel(acceleration=0.081, curvature=0.040, memory=22.0)
+
+
 class FilterSettings(Document):
     """Everything that may be set of the filters, and of the look-ahead."""
 
@@ -186,6 +194,7 @@ class FilterSettings(Document):
     quantisation_kf: QuantisationSettings = QuantisationSettings()
     gyro_ekf: GyroSettings = GyroSettings()
     adaptive: AdaptiveSettings = AdaptiveSettings()
+    smoother: SmootherSettings = SmootherSettings()
     look_ahead: float = quantity("Predict ahead", "s", 0.5, 3.0, 1.5, step=0.1)
 
 

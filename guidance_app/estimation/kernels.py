@@ -113,17 +113,16 @@ def spread(p: FloatArray, f: FloatArray, n: int) -> None:
         p[NORTH, j] += f[3] * p[HEADING, j] + f[4] * p[SPEED, j] + f[5] * p[CURVATURE, j]
         p[HEADING, j] += f[6] * p[SPEED, j] + f[7] * p[CURVATURE, j]
         p[CURVATURE, j] *= f[8]
-        p[SLIP, j] *= f[9]
-        p[DRIFT_EAST, j] *= f[10]
-        p[DRIFT_NORTH, j] *= f[10]
     for i in range(n):
         p[i, EAST] += f[0] * p[i, HEADING] + f[1] * p[i, SPEED] + f[2] * p[i, CURVATURE]
         p[i, NORTH] += f[3] * p[i, HEADING] + f[4] * p[i, SPEED] + f[5] * p[i, CURVATURE]
         p[i, HEADING] += f[6] * p[i, SPEED] + f[7] * p[i, CURVATURE]
         p[i, CURVATURE] *= f[8]
-        p[i, SLIP] *= f[9]
-        p[i, DRIFT_EAST] *= f[10]
-        p[i, DRIFT_NORTH] *= f[10]
+    for slow in range(SLIP, n):
+        factor = f[9] if slow == SLIP else f[10]
+        for j in range(n):
+            p[slow, j] *= factor
+            p[j, slow] *= factor
 
 
 @numba.njit(cache=True)
@@ -152,7 +151,10 @@ def add_process_noise(x: FloatArray, p: FloatArray, dt: float, model: FloatArray
     p[CURVATURE, HEADING] += 0.5 * way * bend
     p[HEADING, HEADING] += way * way * bend / 3.0
     p[GYRO_BIAS, GYRO_BIAS] += common[GYRO_WALK] ** 2 * dt
-    p[SLIP, SLIP] += common[SLIP_SD] ** 2 * -math.expm1(-2.0 * dt / common[SLIP_TIME])
+    if p.shape[0] > SLIP:
+        p[SLIP, SLIP] += common[SLIP_SD] ** 2 * -math.expm1(-2.0 * dt / common[SLIP_TIME])
+    if p.shape[0] <= DRIFT_EAST:
+        return
     fresh = common[DRIFT_SD] ** 2 * -math.expm1(-2.0 * dt / common[DRIFT_TIME])
     p[DRIFT_EAST, DRIFT_EAST] += fresh
     p[DRIFT_NORTH, DRIFT_NORTH] += fresh
