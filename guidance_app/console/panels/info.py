@@ -1,0 +1,28 @@
+"""The info panel: what the receiver's link does, what came in, and how it is filtered."""
+
+from typing import ClassVar
+
+import viser
+
+from guidance_app.console.desk import Desk, Hands
+from guidance_app.console.widgets import Shown, rows_html, words_html
+from guidance_app.view.status import info_view
+
+__all__ = ["Info"]
+
+
+class Info:
+    """Words only."""
+
+    title: ClassVar[str] = "Info"
+
+    def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
+        del hands
+        self._link = Shown(gui)
+        self._rows = Shown(gui)
+
+    def show(self, desk: Desk) -> None:
+        """Brings the words up to now."""
+        view = info_view(desk.snapshot, desk.now, desk.units)
+        self._link.show(words_html(view.link, view.link_level))
+        self._rows.show(rows_html(view.rows))

@@ -1,0 +1,53 @@
+"""The replay panel: play, pause, how fast, and to any second of the recording."""
+
+from typing import ClassVar
+
+import viser
+
+from guidance_app.console.desk import Desk, Hands
+from guidance_app.console.widgets import Choice, Followed, Shown, rows_html
+from guidance_app.view.status import clock, replay_rows
+
+__all__ = ["Replay"]
+
+_SPEEDS = {"½": 0.5, "1": 1.0, "2": 2.0, "5": 5.0, "10": 10.0, "50": 50.0}
+_WORDS = {speed: words for words, speed in _SPEEDS.items()}
+
+
+class Replay:
+    """Steers the recording; there only when one is played."""
+
+    title: ClassVar[str] = "Replay"
+
+    def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
+        control = hands.replay
+        if control is None:
+            msg = "the replay panel needs a session that plays a recording"
+            raise ValueError(msg)
+        state = control.state
+        self._play = gui.add_button("Pause", color="green")
+
+        @self._play.on_click
+        def _(_: object) -> None:
+            if control.state.playing:
+                control.pause()
+            else:
+                control.play()
+
+        end = max(round(state.duration), 1)
+        slider = gui.add_slider("00:00", 0, end, 1, 0, marks=((0, "start"), (end, clock(state.duration))))
+        self._slider = slider
+        self._position = Followed(slider, lambda second: control.seek(float(second)))
+        self._speed = Choice(gui, "Speed ×", tuple(_SPEEDS), lambda words: control.set_speed(_SPEEDS[words]))
+        self._rows = Shown(gui)
+
+    def show(self, desk: Desk) -> None:
+        """Brings button, slider and words up to where the recording is."""
+        state = desk.replay
+        if state is None:
+            return
+        self._play.label = "Pause" if state.playing else ("Play again" if state.ended else "Play")
+        self._slider.label = clock(state.position)
+        self._position.show(int(state.position))
+        self._speed.show(_WORDS.get(state.speed, ""))
+        self._rows.show(rows_html(replay_rows(state.position, state.duration, state.speed, state.catching_up)))

@@ -1,0 +1,38 @@
+"""The head of the panels, always in sight: the numbers, the fix in words, and the button that works or lifts."""
+
+from typing import ClassVar
+
+import viser
+
+from guidance_app.console.desk import Desk, Hands
+from guidance_app.console.widgets import STYLE, Shown, notice_html, tiles_html, words_html
+from guidance_app.model import SetWork
+from guidance_app.view.status import work_view
+
+__all__ = ["Summary"]
+
+
+class Summary:
+    """Numbers and the work button."""
+
+    title: ClassVar[str] = "Summary"
+
+    def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
+        gui.add_html(STYLE)
+        self._notices = Shown(gui)
+        self._tiles = Shown(gui)
+        self._fix = Shown(gui)
+        self._work = gui.add_button("Work", color="gray", hint="Lower or lift the implement")
+
+        @self._work.on_click
+        def _(_: object) -> None:
+            hands.post(SetWork(down=not hands.desk().snapshot.working))
+
+    def show(self, desk: Desk) -> None:
+        """Brings the numbers up to now."""
+        view = work_view(desk.snapshot, desk.now, desk.units)
+        self._notices.show(notice_html(view.notices))
+        self._tiles.show(tiles_html(view.figures))
+        self._fix.show(words_html(view.fix, view.fix_level))
+        self._work.label = view.work_words
+        self._work.color = "green" if view.working else "gray"

@@ -1,0 +1,234 @@
+"""The screen: the shared ground, one scene and one set of panels a client, and the loop that redraws them.
+
+One thread draws everything. It looks at the newest snapshot about 25 times a second and skips what it missed; pictures
+between two fixes are carried on by the pose's own motion. Callbacks of viser run on other threads: they post a command
+or leave a wish, which the loop takes at its next round. A client that has gone is forgotten; whatever happens while one
+client is drawn, the others are drawn on.
+"""
+
+import logging
+import threading
+import time
+from collections.abc import Callable
+
+import viser
+
+from guidance_app.console.clock import shown_instant
+from guidance_app.console.desk import Desk, Hands, Panel
+from guidance_app.console.ground import Ground
+from guidance_app.console.moving import ClientScene, Models
+from guidance_app.console.panels import PANELS
+from guidance_app.model import Snapshot
+from guidance_app.runtime import Session
+from guidance_app.view.camera import ViewMode
+from guidance_app.view.colours import palette_of
+
+__all__ = ["PANEL_WIDTH", "TICK_S", "Screen"]
+
+log = logging.getLogger(__name__)
+
+TICK_S = 0.04
+PANELS_S = 0.25
+"""Words change four times a second: faster, nobody reads them."""
+
+STOP_S = 5.0
+PANEL_WIDTH = 460.0
+BRAND = (20, 140, 60)
+
+
+class _Client:
+    """One browser: its scene, its panels, and the wishes of its fingers."""
+
+    def __init__(self, handle: viser.ClientHandle, scene: ClientScene, panels_of: Callable[["_Client"], None]) -> None:
+        self.handle = handle
+        self.scene = scene
+        self.panels: list[Panel] = []
+        self.wished_view: ViewMode | None = None
+        self.wished_back = False
+        self.panels_due = 0.0
+        panels_of(self)
+
+    def take_wishes(self) -> None:
+        """Does what fingers have asked for since the last redraw."""
+        view, self.wished_view = self.wished_view, None
+        back, self.wished_back = self.wished_back, False
+        if view is not None:
+            self.scene.look(view)
+        elif back:
+            self.scene.bring_back()
+
+
+class Screen:
+    """Scene and panels of one session on viser's server."""
+
+    def __init__(self, server: viser.ViserServer, session: Session) -> None:
+        self._server = server
+        self._session = session
+        self._job = session.job
+        self._night = session.job.settings.night
+        self._wished_night = self._night
+        self._models = Models.of(self._job)
+        self._ground = Ground(server, self._job, palette_of(night=self._night))
+        self._clients: dict[int, _Client] = {}
+        self._arrived: list[viser.ClientHandle] = []
+        self._lock = threading.Lock()
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="screen", daemon=True)
+        self._closed = False
+
+    @property
+    def clients(self) -> int:
+        """How many browsers are drawn."""
+        return len(self._clients)
+
+    @property
+    def night(self) -> bool:
+        """True while the night's colours are shown."""
+        return self._night
+
+    def start(self) -> None:
+        """Begins to draw, for those who are there and those who come."""
+        self._theme()
+        self._ground.show(self._session.snapshot())
+        self._server.on_client_connect(self._arrive)
+        self._server.on_client_disconnect(self._leave)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Ends the loop and waits for it; again is harmless."""
+        self._closed = True
+        self._stop.set()
+        if self._thread.is_alive():
+            self._thread.join(STOP_S)
+
+    # --- clients come and go, on viser's threads -------------------------------------------------------------------
+
+    def _arrive(self, handle: viser.ClientHandle) -> None:
+        with self._lock:
+            self._arrived.append(handle)
+
+    def _leave(self, handle: viser.ClientHandle) -> None:
+        with self._lock:
+            self._arrived = [one for one in self._arrived if one is not handle]
+        self._clients.pop(handle.client_id, None)
+
+    # --- the loop --------------------------------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        due = time.monotonic()
+        while not self._stop.wait(max(0.0, due - time.monotonic())):
+            due = max(due + TICK_S, time.monotonic() + TICK_S / 4)
+            try:
+                self.tick()
+            except Exception:
+                log.exception("a redraw failed; the next one follows")
+
+    def tick(self) -> None:
+        """One redraw of everything."""
+        snapshot = self._session.snapshot()
+        now = shown_instant(self._session, snapshot)
+        self._welcome()
+        self._change_light()
+        self._ground.show(snapshot)
+        for client in list(self._clients.values()):
+            try:
+                self._draw(client, snapshot, now)
+            except Exception:
+                if client.handle.client_id in self._server.get_clients():
+                    log.exception("client %d could not be drawn and is left out", client.handle.client_id)
+                self._clients.pop(client.handle.client_id, None)
+
+    def _draw(self, client: _Client, snapshot: Snapshot, now: float) -> None:
+        client.take_wishes()
+        client.scene.draw(snapshot, now, self._ground)
+        moment = time.monotonic()
+        if moment >= client.panels_due:
+            client.panels_due = moment + PANELS_S
+            desk = self._desk(client, snapshot, now)
+            for panel in client.panels:
+                panel.show(desk)
+
+    def _welcome(self) -> None:
+        with self._lock:
+            arrived, self._arrived = self._arrived, []
+        for handle in arrived:
+            try:
+                scene = ClientScene(handle, self._job, self._models, palette_of(night=self._night))
+                self._clients[handle.client_id] = _Client(handle, scene, self._make_panels)
+            except Exception:
+                if handle.client_id in self._server.get_clients():
+                    log.exception("client %d could not be welcomed", handle.client_id)
+
+    # --- day and night ---------------------------------------------------------------------------------------------
+
+    def _wish_night(self, night: bool) -> None:
+        self._wished_night = night
+
+    def _change_light(self) -> None:
+        if self._wished_night == self._night:
+            return
+        self._night = self._wished_night
+        self._theme()
+        palette = palette_of(night=self._night)
+        self._ground.set_palette(palette)
+        for client in list(self._clients.values()):
+            client.scene.set_palette(palette)
+
+    def _theme(self) -> None:
+        self._server.gui.configure_theme(
+            dark_mode=self._night, show_logo=False, show_share_button=False, brand_color=BRAND
+        )
+
+    # --- panels ----------------------------------------------------------------------------------------------------
+
+    def _desk(self, client: _Client, snapshot: Snapshot, now: float) -> Desk:
+        replay = self._session.replay
+        return Desk(
+            snapshot=snapshot,
+            now=now,
+            units=self._job.settings.units,
+            mode=client.scene.mode,
+            night=self._night,
+            replay=None if replay is None else replay.state,
+        )
+
+    def _hands(self, client: _Client) -> Hands:
+        def look(mode: ViewMode) -> None:
+            client.wished_view = mode
+
+        def bring_back() -> None:
+            client.wished_back = True
+
+        def desk() -> Desk:
+            snapshot = self._session.snapshot()
+            return self._desk(client, snapshot, shown_instant(self._session, snapshot))
+
+        return Hands(
+            post=self._session.post,
+            look=look,
+            bring_back=bring_back,
+            set_night=self._wish_night,
+            desk=desk,
+            replay=self._session.replay,
+        )
+
+    def _make_panels(self, client: _Client) -> None:
+        """The head in viser's main panel; the tabs in one of their own below it, which a phone shows folded."""
+        gui, hands = client.handle.gui, self._hands(client)
+        gui.set_panel_label(self._title())
+        main = gui.main_panel
+        main.dock_right()
+        main.set_width(PANEL_WIDTH)
+        tabs = gui.add_panel()
+        for name, panel in PANELS.items():
+            if name == "summary":
+                client.panels.append(panel(gui, hands))
+            elif name != "replay" or hands.replay is not None:
+                with tabs.add_tab(panel.title):
+                    client.panels.append(panel(gui, hands))
+        tabs.dock_below(main)
+
+    def _title(self) -> str:
+        field = self._job.field.name if self._job.field is not None else "No field"
+        operation = self._job.operation.name if self._job.operation is not None else self._job.implement.name
+        return f"{field} · {operation}"

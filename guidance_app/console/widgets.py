@@ -1,0 +1,135 @@
+"""What panels are made of: HTML that is escaped, and widgets that follow what is without answering themselves.
+
+A value that the program sets fires the widget's callback like a finger does, and a finger on a slider fights with the
+program that sets it. ``Followed`` keeps both apart: its callback hears fingers only, and for a moment after a finger
+the program does not set the widget.
+"""
+
+import html
+import time
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import viser
+
+from guidance_app.view.status import Figure, Level
+
+__all__ = ["STYLE", "Choice", "Followed", "Shown", "buttons", "notice_html", "rows_html", "tiles_html", "words_html"]
+
+HELD_S = 1.2
+"""So long after a finger the program leaves a widget alone."""
+
+STYLE = """<style>
+.g-tiles{display:grid;grid-template-columns:repeat(4,1fr);gap:.35em .3em;padding:.1em .6em .35em;
+ font-variant-numeric:tabular-nums}
+.g-tile{min-width:0;line-height:1.12}
+.g-tile i{font-style:normal;display:block;font-size:.56em;color:var(--mantine-color-dimmed);white-space:nowrap}
+.g-tile b{font-size:1.12em;font-weight:650;letter-spacing:-.02em;white-space:nowrap}
+.g-tile s{text-decoration:none;font-size:.58em;color:var(--mantine-color-dimmed);margin-left:.2em;white-space:nowrap}
+.g-words{padding:.1em .75em .45em;font-size:.72em;white-space:nowrap;overflow:hidden;text-overflow:ellipsis}
+.g-words::before{content:"";display:inline-block;width:.62em;height:.62em;border-radius:50%;margin-right:.5em}
+.g-good::before{background:#2f9e44}.g-fair::before{background:#f08c00}
+.g-bad::before{background:#e03131;border-radius:0}.g-off::before{background:#868e96}
+.g-notice{margin:.1em .6em .45em;padding:.3em .6em;font-size:.66em;line-height:1.3;border-radius:.3em;
+ border-left:.25em solid #f08c00;background:rgba(240,140,0,.13)}
+.g-rows{padding:.1em .75em .5em;font-size:.74em;line-height:1.55;font-variant-numeric:tabular-nums}
+.g-rows div{display:flex;justify-content:space-between;gap:1em}
+.g-rows i{font-style:normal;color:var(--mantine-color-dimmed);white-space:nowrap}
+.g-rows b{font-weight:500;text-align:right;overflow-wrap:anywhere}
+.mantine-Button-root[data-size="compact-xs"]{height:2.35em;font-size:.8em;padding-inline:.45em;--button-fz:.8em}
+</style>"""
+"""Sizes follow the page's font size; colours are the theme's own, so that day and night need nothing here."""
+
+
+def tiles_html(figures: Iterable[Figure]) -> str:
+    """Large numbers with small names, four in a row."""
+    tiles = "".join(
+        f'<div class="g-tile"><i>{html.escape(one.name)}</i><b>{html.escape(one.value)}</b>'
+        f"<s>{html.escape(one.unit)}</s></div>"
+        for one in figures
+    )
+    return f'<div class="g-tiles">{tiles}</div>'
+
+
+def words_html(words: str, level: Level) -> str:
+    """One line with a dot for how good it is; bad is a square, so that it is not the colour alone."""
+    return f'<div class="g-words g-{level}">{html.escape(words)}</div>'
+
+
+def notice_html(notices: Iterable[str]) -> str:
+    """Things to know, in boxes of their own."""
+    return "".join(f'<div class="g-notice">{html.escape(one)}</div>' for one in notices)
+
+
+def rows_html(rows: Iterable[tuple[str, str]]) -> str:
+    """Names on the left, values on the right."""
+    lines = "".join(f"<div><i>{html.escape(name)}</i><b>{html.escape(value)}</b></div>" for name, value in rows)
+    return f'<div class="g-rows">{lines}</div>'
+
+
+class Shown:
+    """A piece of HTML that is sent only when it has changed, and hidden when it is empty."""
+
+    def __init__(self, gui: viser.GuiApi) -> None:
+        self._handle = gui.add_html("")
+
+    def show(self, content: str) -> None:
+        """Replaces the content."""
+        self._handle.content = content
+        self._handle.visible = bool(content)
+
+
+class Followed:
+    """An input that shows what is. ``heard`` is called with the value a finger has set, on one of viser's threads."""
+
+    def __init__(self, handle: Any, heard: Callable[[Any], None]) -> None:
+        self._handle = handle
+        self._touched = -HELD_S
+
+        @handle.on_update  # type: ignore[untyped-decorator]  # any of viser's inputs
+        def _(event: viser.GuiEvent[Any]) -> None:
+            if event.client_id is None:
+                return
+            self._touched = time.monotonic()
+            heard(event.target.value)
+
+    def show(self, value: Any) -> None:
+        """Sets the value, unless a finger was there a moment ago."""
+        if time.monotonic() - self._touched >= HELD_S and self._handle.value != value:
+            self._handle.value = value
+
+
+def buttons(
+    gui: viser.GuiApi, label: str, actions: Sequence[tuple[str, Callable[[], None]]]
+) -> viser.GuiButtonGroupHandle:
+    """A row of buttons side by side behind a label that may change; each has its action."""
+    handle = gui.add_button_group(label, tuple(words for words, _ in actions))
+    by_words = dict(actions)
+
+    @handle.on_click
+    def _(event: viser.GuiEvent[viser.GuiButtonGroupHandle]) -> None:
+        by_words[event.target.value]()
+
+    return handle
+
+
+class Choice:
+    """A row of buttons of which one is chosen; the chosen one is marked by a dot before its words."""
+
+    MARK = "● "
+
+    def __init__(self, gui: viser.GuiApi, label: str, options: Sequence[str], heard: Callable[[str], None]) -> None:
+        self._options = tuple(options)
+        self._chosen: str | None = None
+        self._handle = gui.add_button_group(label, self._options)
+
+        @self._handle.on_click
+        def _(event: viser.GuiEvent[viser.GuiButtonGroupHandle]) -> None:
+            heard(event.target.value.removeprefix(self.MARK))
+
+    def show(self, chosen: str) -> None:
+        """Marks the chosen one."""
+        if chosen != self._chosen:
+            self._chosen = chosen
+            marked = (f"{self.MARK}{one}" if one == chosen else one for one in self._options)
+            self._handle.options = tuple(marked)
