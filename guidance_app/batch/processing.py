@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator
 from guidance_app.batch.inspection import time_text
 from guidance_app.documents import Job
 from guidance_app.engine import Engine
-from guidance_app.estimation import FilterSettings
+from guidance_app.estimation.filter import FilterSettings
 from guidance_app.geodesy import FieldFrame
 from guidance_app.model import Chunk, Event, Fix, Pose, Snapshot, SourceDown
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from guidance_app.bench.rows import Row, add_json_option, shown
 from guidance_app.bench.streams import Day, day_of_work, first_chunks
 from guidance_app.engine import Engine
-from guidance_app.estimation import FILTERS
+from guidance_app.estimation.filters import FILTERS
 from guidance_app.model import Chunk
 
 __all__ = ["add_parser", "measured"]

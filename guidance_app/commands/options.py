@@ -7,7 +7,7 @@ from pathlib import Path
 from guidance_app.boundary import BoundaryError
 from guidance_app.console.address import ConsoleError
 from guidance_app.documents import FieldDocument, Implement, Job, Method, Operation, Receiver, Tractor
-from guidance_app.estimation import FILTERS
+from guidance_app.estimation.filters import FILTERS
 from guidance_app.exchange import ExchangeError
 from guidance_app.guidance.planning import PlanError
 from guidance_app.sources import SourceError

@@ -14,7 +14,8 @@ from guidance_app.decode.decoder import Decoder
 from guidance_app.documents import Job
 from guidance_app.engine.link import after_chunk, after_down, after_up
 from guidance_app.engine.work_done import WorkDone
-from guidance_app.estimation import FilterSettings, make_filter
+from guidance_app.estimation.filter import FilterSettings
+from guidance_app.estimation.filters import make_filter
 from guidance_app.estimation.prediction import Predictor
 from guidance_app.estimation.reference_point import ImplementPoint, measurement_from_fix
 from guidance_app.geodesy import FieldFrame

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from guidance_app.engine import Engine
-from guidance_app.estimation import FILTERS
+from guidance_app.estimation.filters import FILTERS
 from guidance_app.model import (
     Chunk,
     Commanded,
