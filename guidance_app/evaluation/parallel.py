@@ -5,15 +5,20 @@ import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 __all__ = ["Spread", "ignore_interrupt", "in_this_process", "spread_over"]
 
 Job = TypeVar("Job")
 Answer = TypeVar("Answer")
 
-Spread = Callable[[Callable[[Job], Answer], Sequence[Job]], list[Answer]]
-"""Like ``map``: does the work for each job, gives the answers in the order of the jobs."""
+
+class Spread(Protocol):
+    """Like ``map``: does the work for each job, gives the answers in the order of the jobs."""
+
+    def __call__(self, work: Callable[[Job], Answer], jobs: Sequence[Job]) -> list[Answer]:
+        """The answers; ``work`` must be a function that another process can import."""
+        ...
 
 
 def in_this_process(work: Callable[[Job], Answer], jobs: Sequence[Job]) -> list[Answer]:
@@ -27,7 +32,7 @@ def ignore_interrupt() -> None:
 
 
 @contextmanager
-def spread_over(processes: int) -> "Iterator[Spread]":  # type: ignore[type-arg]  # generic in what is called
+def spread_over(processes: int) -> Iterator[Spread]:
     """Gives a :data:`Spread` over so many processes; 1 stays in this one. The processes end with the block."""
     if processes <= 1:
         yield in_this_process

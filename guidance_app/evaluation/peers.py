@@ -5,7 +5,7 @@
 * filterpy's constant-velocity filter (``kinematic_kf``), the one that its own book recommends for a moving vehicle,
   with its acceleration noise tuned on the tuning seeds of the same eight scenarios.
 
-The packages are a test extra. :class:`PeerMissing` says which one to install.
+The packages are a test extra. :class:`PeerMissingError` says which one to install.
 """
 
 import importlib
@@ -20,7 +20,7 @@ from guidance_app.estimation.filter import QuantisationSettings
 from guidance_app.evaluation.tracks import Recording, Track
 from guidance_app.model import FloatArray
 
-__all__ = ["PeerMissing", "constant_velocity", "filterpy_four_state", "four_state_input", "stonesoup_four_state"]
+__all__ = ["PeerMissingError", "constant_velocity", "filterpy_four_state", "four_state_input", "stonesoup_four_state"]
 
 ACCELERATION = 0.35
 """Spectral density in m/s per square root of s of the constant-velocity peer, tuned on the tuning seeds."""
@@ -28,13 +28,15 @@ ACCELERATION = 0.35
 EPOCH = datetime(2013, 11, 8)  # noqa: DTZ001 - Stone Soup wants a date for its stamps; any will do
 
 
-class PeerMissing(Exception):
+class PeerMissingError(Exception):
     """A peer's package is not installed."""
 
 
 def four_state_input(recording: Recording) -> FloatArray:
     """Shape (N, 4): east, north, heading, speed as measured. The recording needs a velocity."""
-    assert recording.velocity is not None, "the four-state filter measures course and speed"
+    if recording.velocity is None:
+        msg = "the four-state filter measures course and speed: the recording needs a velocity"
+        raise ValueError(msg)
     heading = np.arctan2(recording.velocity[:, 0], recording.velocity[:, 1])
     return np.column_stack([recording.position, heading, np.hypot(recording.velocity[:, 0], recording.velocity[:, 1])])
 
@@ -125,7 +127,7 @@ def _package(name: str) -> ModuleType:
     except ModuleNotFoundError as error:
         package = name.partition(".")[0]
         msg = f"the peer {package} is not installed; pip install {package}"
-        raise PeerMissing(msg) from error
+        raise PeerMissingError(msg) from error
 
 
 def _transition(heading: float, interval: float) -> FloatArray:

@@ -63,8 +63,8 @@ class Recording:
     ``position`` and ``velocity`` have shape (N, 2): east, north; ``cell`` is the rounding (east, north) of all
     positions in metres, None when they are not rounded to speak of; ``yaw_rate`` the gyro's, shape (N,), positive
     clockwise. ``antenna`` has shape (N, 3): the lever arm forward, right, height, as turned by roll and pitch, zero
-    when the positions are the reference point's already. ``heading`` is a compass's, shape (N,). ``sigma`` is the
-    receiver's own (east, north) standard deviation.
+    when the positions are the reference point's already. ``heading`` is a compass's, shape (N,), with its
+    standard deviation. ``sigma`` is the receiver's own (east, north) standard deviation.
     """
 
     t: FloatArray
@@ -73,6 +73,7 @@ class Recording:
     velocity: FloatArray | None = None
     yaw_rate: FloatArray | None = None
     heading: FloatArray | None = None
+    heading_sigma: float | None = None
     antenna: FloatArray | None = None
     sigma: tuple[float, float] | None = None
     quality: FixQuality = FixQuality.RTK_FIXED
@@ -119,6 +120,7 @@ def measurements(recording: Recording) -> Iterator[Measurement]:
             speed=ground_speed,
             course=ground_course,
             heading=compass,
+            heading_sigma=recording.heading_sigma,
             yaw_rate=rate,
             antenna=(forward, right, height),
         )
