@@ -31,13 +31,17 @@
   const left = element("div", "side left", bar);
   const right = element("div", "side right", bar);
   const passLine = element("div", "pass", left);
+  const passName = element("span", "name", passLine);
+  const passDetail = element("span", "detail", passLine);
   const turnLine = element("div", "turn", left);
   const workLine = element("div", "work", left);
   const speedLine = element("div", "speed", right);
   const speedNumber = element("span", "number", speedLine);
   const speedUnit = element("span", "unit", speedLine);
   const fixLine = element("div", "fix", right);
-  const areaLine = element("div", "area", right);
+  const lastLine = element("div", "last", right);
+  const guidedPoint = element("span", "guided", lastLine);
+  const workedArea = element("span", "area", lastLine);
   document.body.append(bar);
 
   const pen = canvas.getContext("2d");
@@ -52,7 +56,7 @@
   };
   window.__lightbar = shared;
 
-  let size = { width: 0, height: 0, side: 0, gutter: 0 };
+  let size = { width: 0, height: 0, side: 0 };
   let colours = {};
   let silentSince = performance.now();
   let lastHeard = performance.now();
@@ -63,9 +67,6 @@
     for (const name of ["ground", "edge", "ink", "dim", "hollow", "off", "green", "yellow", "red", "on-green", "track", "mark"]) {
       colours[name] = computed.getPropertyValue(`--${name}`).trim();
     }
-    const root = getComputedStyle(document.documentElement);
-    size.side = root.getPropertyValue("--side").trim();
-    size.gutter = parseFloat(root.getPropertyValue("--gutter")) || 0;
   };
 
   // --- drawing ---
@@ -86,17 +87,16 @@
 
   // Where everything goes: the same for every message of one size.
   const layout = () => {
-    const { width, height } = size;
+    const { width, height, side } = size;
     const phone = width <= 600;
-    const side = phone ? 8 : parseFloat(size.side) + 8;
-    const inner = { from: side + size.gutter, to: width - side - size.gutter };
-    const span = inner.to - inner.from;
-    const rowTop = phone ? 8 : 12;
-    const rowHeight = phone ? 58 : 66;
-    const pill = Math.min(Math.max(span * 0.38, phone ? 138 : 190), 262);
-    const trackTop = rowTop + rowHeight + (phone ? 8 : 10);
-    const trackHeight = phone ? 24 : 26;
-    return { width, height, phone, side, ...inner, span, rowTop, rowHeight, pill, trackTop, trackHeight, middle: width / 2 };
+    const from = phone ? 8 : side + 10;
+    const span = width - 2 * from;
+    const large = phone ? 42 : width < 1150 ? 52 : 57; // of the number: its digits are 0.73 of this high
+    const rowTop = phone ? 8 : 10;
+    const rowHeight = phone ? 62 : 74;
+    const trackTop = rowTop + rowHeight + (phone ? 7 : 9);
+    const pill = Math.min(large * 4.55, span * 0.48);
+    return { width, height, phone, from, span, large, rowTop, rowHeight, pill, trackTop, trackHeight: 26, middle: width / 2 };
   };
 
   // One lamp: an arrow head that points where to steer, larger the farther out it stands.
@@ -121,12 +121,12 @@
 
   const lamps = (place, lit) => {
     const count = style.zones.length;
-    const room = (place.span - place.pill) / 2 - 8;
+    const room = (place.span - place.pill) / 2 - 6;
     const width = room / count;
     const colour = lit ? zoneColour(Math.abs(lit)) : colours.off;
     for (const direction of [-1, 1]) {
       for (let number = 1; number <= count; number++) {
-        const x = place.middle + direction * (place.pill / 2 + 8 + (number - 0.5) * width);
+        const x = place.middle + direction * (place.pill / 2 + 6 + (number - 0.5) * width);
         const on = lit !== null && Math.sign(lit) === direction && number <= Math.abs(lit);
         lamp(x, width, place, number, direction, () => {
           if (lit === null) {
@@ -153,37 +153,42 @@
     pen.fill();
   };
 
+  // The number with its arrow, in a frame that is filled when the tractor is on the line.
   const number = (place, message) => {
     const [amount, unit] = message.d.split(" ");
     const direction = amount === "0" ? 0 : -Math.sign(message.x);
     const onLine = message.k === 0;
-    const x = place.middle - place.pill / 2;
-    box(x, place.rowTop, place.pill, place.rowHeight, 12);
-    pen.fillStyle = onLine ? colours.green : colours.ground;
-    pen.fill();
-    if (!onLine) {
-      pen.strokeStyle = zoneColour(Math.abs(message.k));
-      pen.lineWidth = 3;
-      box(x + 1.5, place.rowTop + 1.5, place.pill - 3, place.rowHeight - 3, 11);
-      pen.stroke();
-    }
+    const colour = onLine ? colours.green : zoneColour(Math.abs(message.k));
     const ink = onLine ? colours["on-green"] : colours.ink;
-    const large = place.phone ? 42 : 60;
-    const small = place.phone ? 16 : 22;
-    const y = place.rowTop + place.rowHeight / 2 + large * 0.04;
-    font(large);
-    const amountWidth = pen.measureText(amount).width;
-    font(small, 600);
-    const unitWidth = pen.measureText(unit).width + 4;
+    box(place.middle - place.pill / 2 + 1.5, place.rowTop + 1.5, place.pill - 3, place.rowHeight - 3, 12);
+    pen.fillStyle = onLine ? colour : colours.ground;
+    pen.fill();
+    pen.strokeStyle = colour;
+    pen.lineWidth = 3;
+    pen.stroke();
+
+    const caption = place.phone ? 11 : 13;
+    font(caption, 700);
+    words(onLine ? "ON THE LINE" : `STEER ${direction < 0 ? "LEFT" : "RIGHT"}`, place.middle, place.rowTop + 12, ink);
+
+    const arrow = place.large * 0.6;
+    const room = place.pill - 2 * (arrow * 0.74 + 16);
+    let large = place.large;
+    let amountWidth, unitWidth;
+    do {
+      font(large);
+      amountWidth = pen.measureText(amount).width;
+      font(large * 0.38, 600);
+      unitWidth = pen.measureText(unit).width + 3;
+    } while (amountWidth + unitWidth > room && (large -= 1) > 20);
+    const y = place.rowTop + place.rowHeight / 2 + 8;
     const start = place.middle - (amountWidth + unitWidth) / 2;
+    words(unit, start + amountWidth + 3, y + large * 0.19, ink, "left");
     font(large);
-    words(amount, start, y, ink, "left");
-    font(small, 600);
-    words(unit, start + amountWidth + 4, y + large * 0.17, ink, "left");
+    words(amount, start, y + large * 0.04, ink, "left");
     if (direction) {
-      const reach = place.pill / 2 - (place.phone ? 18 : 30);
-      steerArrow(place.middle + direction * reach, place.rowTop + place.rowHeight / 2, large * 0.62, direction,
-        onLine ? ink : zoneColour(Math.abs(message.k)));
+      const reach = place.pill / 2 - arrow * 0.42 - 12;
+      steerArrow(place.middle + direction * reach, y, arrow, direction, onLine ? ink : colour);
     }
     return direction;
   };
@@ -202,7 +207,7 @@
     pen.fill();
   };
 
-  const predictionReach = (place) => place.span / 2 - place.trackHeight;
+  const predictionReach = (place) => place.span / 2 - (place.phone ? 78 : 104);
 
   const ticks = (place) => {
     pen.fillStyle = colours.hollow;
@@ -246,27 +251,16 @@
     pen.fill();
     pen.restore();
     if (place.phone) return;
-    const beside = message.p >= 0 ? 1 : -1;
-    const inside = Math.abs(message.p) > 800 ? -1 : 1;
+    const outside = (message.p >= 0 ? 1 : -1) * (Math.abs(message.p) > 750 ? -1 : 1);
     font(15, 650);
-    words(message.e, x + beside * inside * (tall + 8), y + 1, colours.ink, beside * inside > 0 ? "left" : "right");
+    words(message.e, x + outside * (tall + 8), y + 1, colours.ink, outside > 0 ? "left" : "right");
   };
 
   const labels = (place) => {
-    if (place.phone) {
-      font(12, 650);
-      words("HEADING", place.from + 12, place.trackTop + place.trackHeight / 2 + 1, colours.dim, "left");
-      words(style.ahead, place.to - 12, place.trackTop + place.trackHeight / 2 + 1, colours.dim, "right");
-      return;
-    }
-    if (!size.gutter) return;
-    font(13, 650);
-    const row = place.rowTop + place.rowHeight / 2;
-    const trackRow = place.trackTop + place.trackHeight / 2 + 1;
-    words("STEER", place.from - 14, row, colours.dim, "right");
-    words(style.guided.toUpperCase(), place.to + 14, row, colours.dim, "left");
-    words("HEADING", place.from - 14, trackRow, colours.dim, "right");
-    words(style.ahead && `IN ${style.ahead}`, place.to + 14, trackRow, colours.dim, "left");
+    const y = place.trackTop + place.trackHeight / 2 + 1;
+    font(place.phone ? 11 : 13, 700);
+    words("HEADING", place.from + 14, y, colours.dim, "left");
+    words(style.ahead && `IN ${style.ahead}`, place.from + place.span - 14, y, colours.dim, "right");
   };
 
   // Nothing to steer by: hollow lamps, and the reason over them in words.
@@ -275,17 +269,37 @@
   const hollow = (place, reason) => {
     lamps(place, null);
     track(place, true);
-    let pixels = place.phone ? 24 : 34;
-    font(pixels);
-    while (pixels > 13 && pen.measureText(reason).width > place.span - 40) font((pixels -= 1));
-    const width = Math.max(place.pill, pen.measureText(reason).width + 36);
+    const room = place.span - (place.phone ? 40 : 100);
+    let lines = [reason];
+    let pixels = place.phone ? 24 : 32;
+    const widest = () => {
+      font(pixels);
+      return Math.max(...lines.map((line) => pen.measureText(line).width));
+    };
+    while (widest() > room && pixels > 12) {
+      pixels -= 1;
+      if (pixels === 18 && lines.length === 1) {
+        lines = inTwo(reason);
+        pixels = 22;
+      }
+    }
+    const width = Math.max(place.pill, widest() + 36);
     box(place.middle - width / 2, place.rowTop + 1, width, place.rowHeight - 2, 12);
     pen.fillStyle = colours.ground;
     pen.fill();
     pen.strokeStyle = colours.hollow;
     pen.lineWidth = 2;
     pen.stroke();
-    words(reason, place.middle, place.rowTop + place.rowHeight / 2 + 2, colours.ink);
+    const y = place.rowTop + place.rowHeight / 2 + 2;
+    lines.forEach((line, k) => words(line, place.middle, y + (k - (lines.length - 1) / 2) * pixels * 1.2, colours.ink));
+  };
+
+  const inTwo = (text) => {
+    const gaps = [...text.matchAll(/ /g)].map((gap) => gap.index);
+    if (!gaps.length) return [text];
+    const half = text.length / 2;
+    const at = gaps.reduce((best, gap) => (Math.abs(gap - half) < Math.abs(best - half) ? gap : best));
+    return [text.slice(0, at), text.slice(at + 1)];
   };
 
   const noData = (place) => {
@@ -332,7 +346,9 @@
     bar.dataset.number = known.d ?? "";
     bar.dataset.sequence = known.q ?? "";
     bar.dataset.fixAge = known.a === undefined ? "" : (known.a / 1000).toFixed(3);
-    setText(passLine, known.n ?? "");
+    const [, name, detail] = /^(.*?)( \(.*\))?$/.exec(known.n ?? "");
+    setText(passName, name);
+    setText(passDetail, detail ?? "");
     const [distance, seconds, level, fits] = known.u ?? ["", "", "far", 1];
     setText(turnLine, distance && `turn ${distance}${seconds && ` · ${seconds}`}${fits ? "" : " · tight"}`);
     turnLine.dataset.level = level;
@@ -341,7 +357,8 @@
     setText(speedNumber, known.v ?? "");
     setText(speedUnit, known.v ? style.speed : "");
     setText(fixLine, known.f ?? "");
-    setText(areaLine, known.c ?? "");
+    setText(guidedPoint, known.c === undefined ? "" : style.guided);
+    setText(workedArea, known.c ?? "");
     const { steer, number: shown, reason } = shared.drawn;
     const spoken = reason ?? (steer === "none" ? "on the line" : `steer ${steer} ${shown}`);
     if (canvas.getAttribute("aria-label") !== spoken) canvas.setAttribute("aria-label", spoken);
@@ -373,8 +390,7 @@
   const fit = () => {
     const ratio = window.devicePixelRatio || 1;
     readColours();
-    size = { ...size, width: bar.clientWidth, height: bar.clientHeight };
-    size.side = right.offsetWidth;
+    size = { width: bar.clientWidth, height: bar.clientHeight, side: right.offsetWidth };
     canvas.width = Math.round(size.width * ratio);
     canvas.height = Math.round(size.height * ratio);
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);

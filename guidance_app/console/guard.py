@@ -34,7 +34,6 @@ ON_EVERY_RESPONSE = {
     "X-Frame-Options": "DENY",
     "Referrer-Policy": "same-origin",
     "Cross-Origin-Resource-Policy": "same-origin",
-    "Cross-Origin-Opener-Policy": "same-origin",
 }
 """The page is one file of inline script and compiled code; beyond that it may reach this console and nothing else."""
 

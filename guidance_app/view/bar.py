@@ -92,7 +92,7 @@ class TurnLevel(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class TurnView:
-    """The end of the pass: how far, in how many seconds (empty at standstill), how urgent, whether the turn fits."""
+    """The end of the pass: how far, in how many seconds (empty: far or standing), how urgent, whether the turn fits."""
 
     distance: str
     seconds: str
@@ -131,7 +131,8 @@ class BarView:
     fix: str
     speed: str
     area: str
-    working: bool
+    working: bool | None
+    """None when the position is not of now: then nobody knows whether ground is being worked."""
 
 
 def bar_of(snapshot: Snapshot, now: float, settings: Settings) -> BarView:
@@ -151,7 +152,7 @@ def bar_of(snapshot: Snapshot, now: float, settings: Settings) -> BarView:
         fix=_fix_text(snapshot, fix_age, state),
         speed="" if pose is None else speed_text(pose.speed, settings.units),
         area=area_text(snapshot.totals.worked, settings.units),
-        working=snapshot.working,
+        working=None if pose is None else snapshot.working,
     )
 
 
@@ -265,9 +266,8 @@ def _turn(guidance: Guidance, pose: Pose, units: Units) -> TurnView | None:
 
 
 def _seconds_text(seconds: float | None) -> str:
-    if seconds is None:
-        return ""
-    return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
+    """Empty when it is not known, and when it is so long that only the distance means something."""
+    return "" if seconds is None or seconds >= 99.5 else f"{seconds:.0f} s"
 
 
 def _turn_level(seconds: float | None) -> TurnLevel:
@@ -297,7 +297,7 @@ def bar_json(view: BarView, sent_ms: float | None = None) -> str:
         "v": view.speed or None,
         "f": view.fix,
         "c": view.area,
-        "w": int(view.working),
+        "w": None if view.working is None else int(view.working),
     }
     known = {name: value for name, value in message.items() if value is not None}
     return json.dumps(known, separators=(",", ":"), ensure_ascii=False)

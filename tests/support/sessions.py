@@ -38,7 +38,7 @@ def a_job(settings: Settings | None = None) -> Job:
     )
 
 
-def driving(  # noqa: PLR0913 - a snapshot has many sides, and each call names the few it is about
+def driving(
     cross_track: float = 0.124,
     *,
     at: float = 100.0,
