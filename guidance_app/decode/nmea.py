@@ -112,8 +112,8 @@ def _proprietary(
     shift: int = 0,
 ) -> Reader:
     """``renamed`` gives our names to fields of pynmea2; ``shift`` is how many texts it counts before ours."""
-    names = renamed or {}
-    index = {names.get(name, name): place - shift for name, place in layout.name_to_idx.items() if place >= shift}
+    index = {name: place - shift for name, place in layout.name_to_idx.items() if place >= shift}
+    index |= {ours: index[theirs] for theirs, ours in (renamed or {}).items()}
     return Reader(read, index, least)
 
 
