@@ -13,17 +13,16 @@ import math
 import secrets
 import time
 from collections import deque
-from collections.abc import Callable
-from typing import Protocol
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from guidance_app.console.clock import shown_instant
 from guidance_app.console.tasks import until_one_ends
-from guidance_app.documents import Job
 from guidance_app.model import Snapshot
+from guidance_app.runtime import Session
 from guidance_app.view.bar import bar_json, bar_of, style_json
 
-__all__ = ["LiveHub", "LiveSession", "ReplayClock", "ReplayPace"]
+__all__ = ["LiveHub"]
 
 BETWEEN_S = 0.05
 """Without news, a message this often: the watchdog's food and the carried-forward picture."""
@@ -31,55 +30,9 @@ SHORTEST_S = 0.008
 """Two messages are never nearer than this, however fast a replay runs."""
 UNDER_WAY = 4
 """So many messages may be unanswered by one page; then it misses some."""
-REPLAY_LAG_S = 0.1
-"""How much a fast replay may lag behind its own clock, in true seconds, before its newest fix counts as old."""
 LONGEST_ANSWER = 32
 
 log = logging.getLogger(__name__)
-
-
-class ReplayPace(Protocol):
-    """How fast a replay plays; ``math.inf`` is as fast as the machine can."""
-
-    @property
-    def speed(self) -> float:
-        """Session seconds a true second."""
-        ...
-
-
-class ReplayClock(Protocol):
-    """What the hub needs to know of a replay's control."""
-
-    @property
-    def state(self) -> ReplayPace:
-        """Where it is and how fast it plays."""
-        ...
-
-
-class LiveSession(Protocol):
-    """What the hub needs to know of a session."""
-
-    @property
-    def job(self) -> Job:
-        """The documents in force; the settings among them decide units and steps."""
-        ...
-
-    @property
-    def replay(self) -> ReplayClock | None:
-        """None when live."""
-        ...
-
-    def snapshot(self) -> Snapshot:
-        """The newest; any thread."""
-        ...
-
-    def now(self) -> float:
-        """The session clock; any thread."""
-        ...
-
-    def subscribe(self, hear: Callable[[Snapshot], None]) -> Callable[[], None]:
-        """Calls ``hear`` after each new snapshot until the returned function is called."""
-        ...
 
 
 class _Page:
@@ -94,7 +47,7 @@ class _Page:
 class LiveHub:
     """Makes each message once and hands it to every page. All but ``_hear`` runs on the front's loop."""
 
-    def __init__(self, session: LiveSession) -> None:
+    def __init__(self, session: Session) -> None:
         self._session = session
         self._pages: set[_Page] = set()
         self._message = ""
@@ -148,7 +101,7 @@ class LiveHub:
             snapshot = self._session.snapshot()
             settings = self._session.job.settings
             self._style = style_json(settings, snapshot.look_ahead_s)
-            view = bar_of(snapshot, self._instant(snapshot), settings)
+            view = bar_of(snapshot, shown_instant(self._session, snapshot), settings)
             self._message = bar_json(view, time.time() * 1000.0)
         except Exception as fault:
             # One odd snapshot must not end the bar: until it is gone the pages get nothing and say NO DATA.
@@ -158,15 +111,6 @@ class LiveHub:
             return
         for page in self._pages:
             page.wanted.set()
-
-    def _instant(self, snapshot: Snapshot) -> float:
-        """The session time to show. A fast replay's clock runs ahead of what has been worked through."""
-        replay = self._session.replay
-        speed = 1.0 if replay is None else replay.state.speed
-        if math.isinf(speed):
-            return snapshot.arrival
-        lag = REPLAY_LAG_S * max(0.0, speed - 1.0)
-        return max(snapshot.arrival, self._session.now() - lag)
 
     async def serve(self, websocket: WebSocket) -> None:
         """One page's socket, from its opening to its end."""

@@ -4,7 +4,7 @@ import contextlib
 import socket
 import threading
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Protocol
 
 import uvicorn
 import viser
@@ -22,10 +22,12 @@ from guidance_app.console.address import (
 from guidance_app.console.front import Download, front_app, own_files, static_folder
 from guidance_app.console.guard import Guard
 from guidance_app.console.inner import InnerViser
-from guidance_app.console.live import LiveHub, LiveSession
+from guidance_app.console.live import LiveHub
 from guidance_app.console.qr import terminal_qr
+from guidance_app.console.screen import Screen
+from guidance_app.runtime import Session
 
-__all__ = ["Console", "ConsoleError", "Download", "Screen", "ScreenFactory"]
+__all__ = ["Console", "ConsoleError", "Download", "Picture", "ScreenFactory"]
 
 DEFAULT_PORT = 8080
 """Where the console is found when nothing else is asked for."""
@@ -36,7 +38,7 @@ BIGGEST_MESSAGE = 64 * 1024 * 1024
 """The largest message from a browser: viser's own limit is 50 MB, and its upload button splits files."""
 
 
-class Screen(Protocol):
+class Picture(Protocol):
     """Scene and panels on viser's server."""
 
     def start(self) -> None:
@@ -48,7 +50,7 @@ class Screen(Protocol):
         ...
 
 
-ScreenFactory = Callable[[viser.ViserServer, Any], Screen]
+ScreenFactory = Callable[[viser.ViserServer, Session], Picture]
 
 
 class _Front(uvicorn.Server):
@@ -83,13 +85,13 @@ class Console:
 
     def __init__(
         self,
-        session: LiveSession,
+        session: Session,
         *,
         host: str | None = None,
         port: int = DEFAULT_PORT,
         lan: bool = False,
         pin: str | None = None,
-        screen_factory: ScreenFactory | None = None,
+        screen_factory: ScreenFactory = Screen,
     ) -> None:
         if host is not None and not lan and not is_loopback(host):
             msg = f"{host} is reached from the network; add --lan, so that a PIN stands before it."
@@ -98,7 +100,7 @@ class Console:
         self._host = host or (ALL_INTERFACES if lan else LOOPBACK)
         self._wanted_port = port
         self._lan = lan
-        self._screen_factory = screen_factory or _real_screen
+        self._screen_factory = screen_factory
         self._closing = contextlib.ExitStack()
         self.pin = (pin or new_pin()) if lan else None
         """What a browser must show; None without ``lan``."""
@@ -168,9 +170,3 @@ class Console:
         if self._host != ALL_INTERFACES:
             return (self._host,)
         return lan_addresses() or (f"{socket.gethostname()}.local",)
-
-
-def _real_screen(server: viser.ViserServer, session: Any) -> Screen:
-    from guidance_app.console.screen import Screen as RealScreen  # noqa: PLC0415 - a console may come with another one
-
-    return RealScreen(server, session)

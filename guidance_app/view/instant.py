@@ -4,11 +4,10 @@ Fixes come one to twenty-five times a second, pictures more often. Only the move
 cross-track error at the fix itself is the engine's, so at the fix both agree to the bit.
 """
 
-import numpy as np
-
 from guidance_app.estimation.prediction import pose_after
 from guidance_app.estimation.reference_point import carried
-from guidance_app.model import FloatArray, Guidance, Pose
+from guidance_app.guidance.polyline import Polyline
+from guidance_app.model import Guidance, Pose
 
 __all__ = ["moved_right"]
 
@@ -25,24 +24,6 @@ def moved_right(guidance: Guidance, pose: Pose, point: Point, seconds: float) ->
     if (later.east, later.north, later.heading) == (pose.east, pose.north, pose.heading):
         return 0.0
     after = carried(point, pose, later)
-    points, closed = guidance.target.points, guidance.target.closed
-    moved = _right_of(points, after, closed=closed) - _right_of(points, point, closed=closed)
+    line = Polyline.of(guidance.target)
+    moved = line.foot(*after).cross - line.foot(*point).cross
     return -moved if guidance.against else moved
-
-
-def _right_of(points: FloatArray, place: Point, *, closed: bool) -> float:
-    """Metres right of the nearest stretch of the line, which is thought to go on straight beyond its ends."""
-    starts = points if closed else points[:-1]
-    ends = np.roll(points, -1, axis=0) if closed else points[1:]
-    along = ends - starts
-    lengths = np.hypot(along[:, 0], along[:, 1])
-    real = lengths > 0.0
-    starts, along, lengths = starts[real], along[real], lengths[real]
-    if len(starts) == 0:
-        return 0.0
-    units = along / lengths[:, np.newaxis]
-    seen = np.asarray(place) - starts
-    reached = np.clip(np.einsum("ij,ij->i", seen, units), 0.0, lengths)
-    missed = seen - reached[:, np.newaxis] * units
-    nearest = int(np.argmin(np.einsum("ij,ij->i", missed, missed)))
-    return float(seen[nearest, 0] * units[nearest, 1] - seen[nearest, 1] * units[nearest, 0])

@@ -122,5 +122,8 @@ class HandSession:
         for hear in hearing:
             hear(snapshot)
 
+    def start(self) -> None:
+        """Nothing to begin."""
+
     def close(self) -> None:
         """Nothing to end."""
