@@ -8,7 +8,7 @@ shares everything immutable: a replay keeps one every so often, to jump back to.
 import copy
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import assert_never
+from typing import Any, assert_never
 
 from guidance_app.decode.decoder import Decoder
 from guidance_app.documents import Job
@@ -45,6 +45,9 @@ from guidance_app.model import (
 __all__ = ["Engine"]
 
 OFF = "off"
+Changes = dict[str, Any]
+"""Members of a snapshot that are new; one event replaces the snapshot once, whatever it changes."""
+NO_POSE: Changes = {"pose": None, "implement": None, "prediction": None, "guidance": None}
 
 
 class Engine:
@@ -67,9 +70,8 @@ class Engine:
         self._work = WorkDone(job)
         self._frame = self._work.frame
         self._raw_pose: Pose | None = None
-        self._snapshot = self._shown(
-            Snapshot(0, 0.0, LinkState(), look_ahead_s=self._look_ahead, filter_name=self._filter_name)
-        )
+        first = Snapshot(0, 0.0, LinkState(), look_ahead_s=self._look_ahead, filter_name=self._filter_name)
+        self._snapshot = replace(first, **self._work.shown_since(first, ()))
 
     @property
     def snapshot(self) -> Snapshot:
@@ -97,31 +99,37 @@ class Engine:
 
     def step(self, event: Event) -> Snapshot:
         """The snapshot after one more event."""
-        for snapshot in self.steps(event):
-            self._snapshot = snapshot
+        for _ in self.steps(event):
+            pass
         return self._snapshot
 
     def steps(self, event: Event) -> Iterator[Snapshot]:
         """The snapshots after each fix that the event closed, or one when it closed none."""
         match event:
             case Chunk():
-                yield from self._take_bytes(event)
+                decoder = self._decoder(event.link)
+                yield from self._observe(event, decoder.feed(event), decoder)
             case Commanded():
                 yield self._publish(event.arrival, self._command(event.arrival, event.command))
             case SourceUp():
-                yield self._publish(event.arrival, replace(self._snapshot, link=after_up(self._snapshot.link, event)))
+                yield self._publish(event.arrival, {"link": after_up(self._snapshot.link, event)})
             case SourceDown():
-                yield from self._end_of_link(event)
+                decoder = self._decoder(event.link)
+                closed = decoder.finish(event.arrival)
+                if closed:
+                    yield from self._observe(Chunk(event.arrival, b"", event.link), closed, decoder)
+                yield self._publish(event.arrival, {"link": after_down(self._snapshot.link, event)})
             case _:
                 assert_never(event)
 
     def failed(self, arrival: float, reason: str) -> Snapshot:
         """The snapshot that says that the engine itself has failed, with nothing to steer by."""
         link = replace(self._snapshot.link, status=LinkStatus.DOWN, since=arrival, reason=f"internal error: {reason}")
-        return self._publish(arrival, replace(self._snapshot, link=link, pose=None, guidance=None, prediction=None))
+        return self._publish(arrival, {"link": link, **NO_POSE})
 
-    def _publish(self, arrival: float, snapshot: Snapshot) -> Snapshot:
-        self._snapshot = replace(snapshot, sequence=self._snapshot.sequence + 1, arrival=arrival)
+    def _publish(self, arrival: float, changes: Changes) -> Snapshot:
+        sequence = self._snapshot.sequence + 1
+        self._snapshot = replace(self._snapshot, sequence=sequence, arrival=arrival, **changes)
         return self._snapshot
 
     def _decoder(self, link: str) -> Decoder:
@@ -129,64 +137,52 @@ class Engine:
             self._decoders[link] = Decoder(link)
         return self._decoders[link]
 
-    def _take_bytes(self, chunk: Chunk) -> Iterator[Snapshot]:
-        decoder = self._decoder(chunk.link)
-        yield from self._observe(chunk, decoder.feed(chunk), decoder)
-
-    def _end_of_link(self, event: SourceDown) -> Iterator[Snapshot]:
-        decoder = self._decoder(event.link)
-        closed = decoder.finish(event.arrival)
-        if closed:
-            yield from self._observe(Chunk(event.arrival, b"", event.link), closed, decoder)
-        link = after_down(self._snapshot.link, event)
-        yield self._publish(event.arrival, replace(self._snapshot, link=link))
-
     def _observe(self, chunk: Chunk, closed: tuple[Observation, ...], decoder: Decoder) -> Iterator[Snapshot]:
         counts = (decoder.sentences, sum(decoder.rejected.values()))
-        link = after_chunk(self._snapshot.link, chunk, closed, counts)
-        snapshot = replace(self._snapshot, link=link)
-        fixes = 0
+        changes: Changes = {"link": after_chunk(self._snapshot.link, chunk, closed, counts)}
         for one in closed:
             match one:
                 case Fix():
-                    fixes += 1
-                    snapshot = self._publish(chunk.arrival, self._fix(snapshot, one))
-                    yield snapshot
+                    yield self._publish(chunk.arrival, changes | self._fix(one))
+                    changes = {}
                 case Attitude():
-                    self._attitude = one
-                    snapshot = replace(snapshot, attitude=one)
+                    self._attitude = changes["attitude"] = one
                 case NoFix() | Rejected():
                     pass
                 case _:
                     assert_never(one)
-        if not fixes:
-            yield self._publish(chunk.arrival, snapshot)
+        if changes:
+            yield self._publish(chunk.arrival, changes)
 
-    def _fix(self, snapshot: Snapshot, fix: Fix) -> Snapshot:
+    def _fix(self, fix: Fix) -> Changes:
         """From one fix to guidance: frame, measurement, filter, implement, guidance, coverage."""
         if self._frame is None:
             self._frame = FieldFrame(fix.latitude_deg, fix.longitude_deg)
             self._work.begin_at(self._frame)
-        interval = snapshot.fix_interval if snapshot.fix is None else fix.t - snapshot.fix.t
-        snapshot = replace(snapshot, fix=fix, fix_interval=interval or snapshot.fix_interval)
+        changes: Changes = {"fix": fix}
+        if self._snapshot.fix is not None and fix.t > self._snapshot.fix.t:
+            changes["fix_interval"] = fix.t - self._snapshot.fix.t
         try:
             measurement = measurement_from_fix(fix, self._attitude, self._frame, self._job.tractor)
         except ValueError as error:
-            nothing = replace(snapshot, pose=None, guidance=None, prediction=None, implement=None)
-            return replace(nothing, notices=(*self._work.notices, str(error)))
+            return changes | NO_POSE | {"notices": (*self._work.notices, str(error))}
         self._raw_pose = self._filter.step(measurement)
-        return self._guide(snapshot, reported=fix.implement_down)
+        return changes | self._guide(reported=fix.implement_down)
 
-    def _guide(self, snapshot: Snapshot, *, reported: bool | None) -> Snapshot:
+    def _guide(self, *, reported: bool | None) -> Changes:
         pose = self._marked(self._raw_pose)
         if pose is None:
-            return self._shown(replace(snapshot, pose=None, guidance=None, prediction=None, implement=None))
+            return NO_POSE | {"notices": self._work.notices}
         implement = self._implement.step(pose)
         prediction = self._predictor.step(pose, self._look_ahead)
         self._work.step(pose, implement, reported=reported)
         if prediction is not None:
             prediction = self._work.ahead(prediction)
-        return self._shown(replace(snapshot, pose=pose, implement=implement, prediction=prediction))
+        return {"pose": pose, "implement": implement, "prediction": prediction} | self._shown()
+
+    def _shown(self) -> Changes:
+        """What there is to guide along, what is worked, and every offset in force."""
+        return self._work.shown_since(self._snapshot, () if self._mark is None else (self._mark,))
 
     def _marked(self, pose: Pose | None) -> Pose | None:
         """The pose with the driver's position offset."""
@@ -194,22 +190,19 @@ class Engine:
             return pose
         return replace(pose, east=pose.east + self._mark.east, north=pose.north + self._mark.north)
 
-    def _command(self, arrival: float, command: Command) -> Snapshot:
+    def _command(self, arrival: float, command: Command) -> Changes:
         match command:
             case SetLookAhead():
                 self._look_ahead = command.seconds
-                return replace(self._snapshot, look_ahead_s=command.seconds)
+                return {"look_ahead_s": command.seconds}
             case OnTheMark():
                 self._mark = self._mark_from(arrival, command)
             case DropOffset(kind=OffsetKind.MARK):
                 self._mark = None
             case _:
                 self._work.command(command, arrival)
-        return self._shown(self._snapshot)
-
-    def _shown(self, snapshot: Snapshot) -> Snapshot:
-        """With what there is to guide along, what is worked, and every offset in force."""
-        return self._work.shown_in(snapshot, () if self._mark is None else (self._mark,))
+        shown = self._shown()
+        return shown if self._snapshot.pose is not None else shown | NO_POSE
 
     def _mark_from(self, arrival: float, command: OnTheMark) -> OffsetRecord | None:
         """The offset that puts the reference point where the driver says it stands; unchanged without a pose."""

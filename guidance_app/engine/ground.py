@@ -51,10 +51,9 @@ def ground_of(job: Job) -> Ground | None:
     return Ground(frame, polygon, rings, plan, passes=_passes_of(plan), notices=plan.warnings)
 
 
-def ground_beside(ground: Ground, stretch: tuple[FloatArray, FloatArray], spacing: float) -> Ground:
-    """The same ground with lines beside a stretch that was driven, from its start to its end, each of shape (2,)."""
-    start, end = ((float(east), float(north)) for east, north in stretch)
-    family = ParallelLines(start, end, spacing)
+def ground_beside(ground: Ground, stretch: tuple[tuple[float, float], tuple[float, float]], spacing: float) -> Ground:
+    """The same ground with lines beside a stretch that was driven, from its start to its end."""
+    family = ParallelLines(*stretch, spacing)
     return Ground(
         ground.frame,
         ground.polygon,

@@ -6,6 +6,7 @@ the first straight stretch when there is no plan. Like the engine this only sequ
 
 import copy
 from dataclasses import replace
+from typing import Any
 
 from guidance_app.documents import Job
 from guidance_app.engine.ground import Ground, ground_beside, ground_of, mainland_of, shown_beside
@@ -88,7 +89,7 @@ class WorkDone:
         if self._tracker is None:
             self._look_for_a_line(pose)
         guided = implement[:2] if self._job.settings.guide_implement else (pose.east, pose.north)
-        self._guided = (pose, guided)
+        self._guided = pose, guided
         if self._tracker is not None:
             self._guidance = self._tracker.step(pose, guided, self._switch.down)
             self._show_around_target()
@@ -139,31 +140,34 @@ class WorkDone:
         errors = self._tracker.errors_at(*point, later.heading)
         return prediction if errors is None else replace(prediction, cross_track=errors[0], heading_error=errors[1])
 
-    def shown_in(self, snapshot: Snapshot, marks: tuple[OffsetRecord, ...]) -> Snapshot:
-        """The snapshot with all of this."""
-        ground = self._ground
+    @property
+    def notices(self) -> tuple[str, ...]:
+        """What the driver should know of field and plan."""
+        return () if self._ground is None else self._ground.notices
+
+    def shown_since(self, snapshot: Snapshot, marks: tuple[OffsetRecord, ...]) -> dict[str, Any]:
+        """The members of a snapshot that all this makes; the ground only where ``snapshot`` shows an older one."""
         lines = () if self._tracker is None else self._tracker.offsets
-        snapshot = replace(
-            snapshot,
-            guidance=self._guidance if snapshot.pose is not None else None,
-            working=self._switch.down,
-            work_mode=self._switch.mode,
-            totals=self._coverage.totals,
-            track=self._track.trail,
-            worked=self._coverage.worked,
-            offsets=(*marks, *lines),
-        )
-        if ground is None or snapshot.ground_version == self._version:
-            return snapshot
-        return replace(
-            snapshot,
-            origin_deg=(ground.frame.latitude_deg, ground.frame.longitude_deg),
-            field_rings=ground.rings,
-            passes=ground.passes if self._tracker is None else self._tracker.moved(ground.passes),
-            plan=ground.plan,
-            notices=ground.notices,
-            ground_version=self._version,
-        )
+        shown: dict[str, Any] = {
+            "guidance": self._guidance,
+            "working": self._switch.down,
+            "work_mode": self._switch.mode,
+            "totals": self._coverage.totals,
+            "track": self._track.trail,
+            "worked": self._coverage.worked,
+            "offsets": (*marks, *lines),
+            "notices": self.notices,
+        }
+        ground = self._ground
+        if ground is not None and snapshot.ground_version != self._version:
+            shown |= {
+                "origin_deg": (ground.frame.latitude_deg, ground.frame.longitude_deg),
+                "field_rings": ground.rings,
+                "passes": ground.passes if self._tracker is None else self._tracker.moved(ground.passes),
+                "plan": ground.plan,
+                "ground_version": self._version,
+            }
+        return shown
 
     def _look_for_a_line(self, pose: Pose) -> None:
         stretch = self._stretch.step(pose)

@@ -70,7 +70,7 @@ class LiveSession:
         try:
             for event in self._source.events(self._stop):
                 self._events.put(event)
-        except Exception as error:  # noqa: BLE001 - failure is data: the screen says it, the thread ends
+        except Exception as error:
             log.exception("the source failed")
             self._events.put(SourceDown(self.now(), f"{self._source.description} failed: {error}"))
 

@@ -134,7 +134,6 @@ class ReplaySession:
     def _run(self) -> None:
         while not self._pacer.closed:
             due = self._pacer.next(self._publisher.least_interval if self._publisher.pending else None)
-            self._take_posted()
             match due:
                 case Chunk():
                     self._advance(due)
@@ -142,16 +141,25 @@ class ReplaySession:
                     self._jump(due)
                 case None:
                     self._publisher.tell()
+            self._take_posted()
             self._note_the_end()
 
     def _take_posted(self) -> None:
-        while not self._posted.empty():
-            given = Commanded(self._pacer.position, self._posted.get())
+        """Takes what was posted, here; while a jump waits, there."""
+        while not (self._pacer.sought or self._posted.empty()):
+            given = Commanded(self._here(), self._posted.get())
             if isinstance(given.command, SetLookAhead):
                 self._look_ahead = given.command
             else:
                 self._remember(given)
             self._step(given)
+
+    def _here(self) -> float:
+        """The playing position, between the chunk taken last and the next one."""
+        chunks = self._log.chunks
+        last = chunks[self._index - 1].arrival if self._index else 0.0
+        following = chunks[self._index].arrival if self._index < len(chunks) else self._pacer.duration
+        return min(max(self._pacer.position, last), following)
 
     def _remember(self, given: Commanded) -> None:
         """Keeps a command at its place. Checkpoints farther on do not know it and are dropped."""

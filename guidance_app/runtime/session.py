@@ -104,7 +104,7 @@ class Publisher:
         for hear in self._hearers:
             try:
                 hear(self._snapshot)
-            except Exception:  # noqa: BLE001 - whatever a hearer does, the drive goes on without it
+            except Exception:
                 log.exception("a hearer of the session failed and is dropped")
                 with self._lock:
                     self._hearers = tuple(one for one in self._hearers if one is not hear)
