@@ -1,21 +1,22 @@
 """Paths of bounded curvature between poses: arcs of one radius and straights, forward or with one leg backward.
 
-Twelve words are tried: the six of Dubins (1957), and after Reeds and Shepp (1990) those with the middle leg driven
-backward, which turn on a narrow headland (fishtail). All functions work on many pairs of poses at once. Angles here
+The words are the six of Dubins (1957), and after Reeds and Shepp (1990) those whose middle leg is driven backward, which
+turn on a narrow headland (fishtail), or that are driven backward all the way. All functions work on many pairs of poses at once. Angles here
 are yaws, counter-clockwise from east, because the arithmetic is that of circles; nothing of it leaves this file but
 polylines and lengths.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from guidance_app.model import FloatArray
 
-__all__ = ["PIECES", "WORDS", "Manoeuvres", "join", "poses_along", "with_straights"]
+IntArray = NDArray[np.intp]
 
-PIECES = 5
-"""Straight out, three pieces of a word, straight in."""
+__all__ = ["WORDS", "Manoeuvres", "backed", "join", "poses_along", "stacked", "with_straights"]
 
 WORDS = 14
 """Number of candidates that ``join`` gives for a pair; a three-arc word counts for each side of its middle circle."""
@@ -40,7 +41,7 @@ class Manoeuvres:
         total: FloatArray = np.abs(self.lengths).sum(axis=1)
         return np.where(np.isnan(total), np.inf, total)
 
-    def take(self, rows: np.ndarray) -> "Manoeuvres":
+    def take(self, rows: IntArray) -> "Manoeuvres":
         """Only these candidates."""
         return Manoeuvres(self.start[rows], self.turns[rows], self.lengths[rows], self.radius)
 
@@ -66,21 +67,47 @@ def join(start: FloatArray, end: FloatArray, radius: float, *, reverse: bool) ->
     )
 
 
-def with_straights(words: Manoeuvres, out: FloatArray, into: FloatArray) -> Manoeuvres:
-    """The candidates with a straight before and after, ``out`` and ``into`` (C,), negative backward.
+def with_straights(words: Manoeuvres, before: FloatArray, after: FloatArray) -> Manoeuvres:
+    """The candidates with straights before and after, shapes (C, B) and (C, A), negative backward.
 
-    ``start`` moves back by ``out``, so the words themselves stay where they are.
+    The words themselves stay where they are; the start moves so that the straights lead to them.
     """
     yaw = words.start[:, 2]
     start = words.start.copy()
-    start[:, 0] -= out * np.cos(yaw)
-    start[:, 1] -= out * np.sin(yaw)
-    zero = np.zeros(len(out))
+    start[:, 0] -= before.sum(axis=1) * np.cos(yaw)
+    start[:, 1] -= before.sum(axis=1) * np.sin(yaw)
     return Manoeuvres(
         start,
-        np.column_stack([zero, words.turns, zero]),
-        np.column_stack([out, words.lengths, into]),
+        np.column_stack([np.zeros_like(before), words.turns, np.zeros_like(after)]),
+        np.column_stack([before, words.lengths, after]),
         words.radius,
+    )
+
+
+def backed(start: FloatArray, end: FloatArray, radius: float) -> Manoeuvres:
+    """The six words of Dubins driven backward all the way, pair by pair; rows as of ``join``."""
+    turned = join(_about(start), _about(end), radius, reverse=False)
+    return Manoeuvres(np.repeat(start, WORDS, axis=0), -turned.turns, -turned.lengths, radius)
+
+
+def _about(poses: FloatArray) -> FloatArray:
+    return poses + np.array([0.0, 0.0, np.pi])
+
+
+def stacked(several: Sequence[Manoeuvres], pairs: int) -> Manoeuvres:
+    """Candidates of several kinds for the same pairs, those of one pair next to each other."""
+    each = [len(kind.start) // pairs for kind in several]
+
+    def together(arrays: Sequence[FloatArray]) -> FloatArray:
+        width = arrays[0].shape[1]
+        shaped = [array.reshape(pairs, rows, width) for array, rows in zip(arrays, each, strict=True)]
+        return np.concatenate(shaped, axis=1).reshape(-1, width)
+
+    return Manoeuvres(
+        together([kind.start for kind in several]),
+        together([kind.turns for kind in several]),
+        together([kind.lengths for kind in several]),
+        several[0].radius,
     )
 
 

@@ -1,22 +1,21 @@
 """A whole field's plan: headland laps, passes in driving order, and what joins them."""
 
-import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-
-import numpy as np
 import shapely
-from shapely import MultiPolygon, Polygon
+from shapely import Polygon
 
-from guidance_app.guidance.cells import Piece, Strips, cells_of, cut, strips_over
+from guidance_app.guidance.cells import cells_of, cut, strips_over
 from guidance_app.guidance.costs import costs_of
 from guidance_app.guidance.direction import pass_heading
-from guidance_app.guidance.headland import Headland, Lap, headland_of, parts_of
+from guidance_app.guidance.headland import headland_of, parts_of
+from guidance_app.guidance.joining import Joiner
 from guidance_app.guidance.patterns import METHODS
 from guidance_app.guidance.request import PlanError, PlanRequest, request_from_documents
 from guidance_app.guidance.room import Room
-from guidance_app.guidance.turns import Turn, Turner
-from guidance_app.model import FloatArray, Plan, Segment, SegmentKind
+from guidance_app.guidance.route import Cell, route
+from guidance_app.guidance.task import Task
+from guidance_app.guidance.turns import Turner
+from guidance_app.guidance.ways import Ways
+from guidance_app.model import FloatArray, Plan
 
 __all__ = ["PlanError", "PlanRequest", "plan_operation", "request_from_documents"]
 
@@ -25,26 +24,6 @@ SMALLEST_FIELD = 10.0
 
 VERTEX_TOLERANCE = 0.02
 """Metres by which a boundary may be smoothed before planning: below what a driver can hold."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Work:
-    """Something to work, in the direction it will be driven. ``points`` in driving order."""
-
-    kind: SegmentKind
-    number: int
-    points: FloatArray
-    closed: bool
-
-    @property
-    def first_pose(self) -> tuple[float, float, float]:
-        return _pose(self.points[0], self.points[1] - self.points[0])
-
-    @property
-    def last_pose(self) -> tuple[float, float, float]:
-        if self.closed:
-            return _pose(self.points[0], self.points[0] - self.points[-1])
-        return _pose(self.points[-1], self.points[-1] - self.points[-2])
 
 
 def plan_operation(polygon: Polygon, request: PlanRequest) -> Plan:
@@ -57,25 +36,26 @@ def plan_operation(polygon: Polygon, request: PlanRequest) -> Plan:
     turner = Turner(room, request)
     heading = pass_heading(ground, headland.mainland, request)
     warnings: list[str] = []
-    works: list[_Work] = []
     strips = None
+    cells: list[Cell] = []
     if headland.mainland:
         strips = strips_over(headland.mainland, heading, request.spacing, request.last_pass, None)
         pieces = cut(headland.mainland, strips, 0.0)
-        for cell in cells_of(pieces):
-            order = method.pass_order(len(cell), options)
-            works.extend(_driven(cell, order.sequence, strips, len(works)))
+        cells = [Cell(run, strips) for run in cells_of(pieces)]
     else:
         warnings.append("the turning space leaves no mainland: the field is worked in laps only")
-    laps = [
-        _Work(SegmentKind.LAP, len(works) + 1 + place, _started_near(lap.points, None), closed=True)
-        for place, lap in enumerate(headland.laps)
-    ]
-    works = laps + works if request.laps_first else works + laps[::-1]
-    if not works:
+    ways = Ways(turner, [lap.points for lap in headland.laps], headland.mainland)
+    joiner = Joiner(turner, ways)
+    tasks: list[Task] = []
+    for run in route(cells, lambda count: method.pass_order(count, options), request):
+        tasks.extend(run.tasks(len(tasks)))
+    number = len(tasks)
+    for lap in headland.laps[::-1]:
+        tasks.extend(joiner.lap_tasks(lap, tasks[-1].last if tasks else None, len(tasks) + 1))
+    if not tasks:
         msg = f"a field of {ground.area / 1e4:.2f} ha has no room for a working width of {request.width:g} m"
         raise PlanError(msg)
-    segments = tuple(_segments(works, turner))
+    segments = tuple(joiner.segments(tasks))
     return Plan(
         method=method.name,
         direction=heading,
@@ -101,54 +81,7 @@ def _ground(polygon: Polygon, request: PlanRequest) -> Polygon:
         raise PlanError(msg)
     ground = shapely.simplify(parts[0], VERTEX_TOLERANCE)
     holes = [ring for place, ring in enumerate(ground.interiors) if place not in request.passable]
-    return Polygon(ground.exterior, holes)
-
-
-def _driven(cell: Sequence[Piece], sequence: Sequence[int], strips: Strips, done: int) -> Iterator[_Work]:
-    forward = True
-    for place in sequence:
-        piece = cell[place]
-        middle = strips.middle(piece.row)
-        ends = [(piece.low, middle), (piece.high, middle)]
-        points = strips.east_north(np.array(ends if forward else ends[::-1]))
-        forward = not forward
-        yield _Work(SegmentKind.PASS, done + place + 1, points, closed=False)
-
-
-def _started_near(points: FloatArray, near: FloatArray | None) -> FloatArray:
-    return points
-
-
-def _segments(works: Sequence[_Work], turner: Turner) -> Iterator[Segment]:
-    starts = np.array([work.last_pose for work in works[:-1]]).reshape(-1, 3)
-    ends = np.array([work.first_pose for work in works[1:]]).reshape(-1, 3)
-    turns = turner.turns(starts, ends) if len(works) > 1 else []
-    for place, work in enumerate(works):
-        length = shapely.length(shapely.linestrings(work.points))
-        if work.closed:
-            length += math.dist(work.points[0], work.points[-1])
-        yield Segment(work.kind, work.number, work.points, True, float(length), closed=work.closed)
-        if place < len(turns):
-            yield from _turn_segments(turns[place], works[place + 1].number)
-
-
-def _turn_segments(turn: Turn, number: int) -> Iterator[Segment]:
-    for leg in turn.legs:
-        length = float(shapely.length(shapely.linestrings(leg.points)))
-        yield Segment(
-            SegmentKind.TURN,
-            number,
-            leg.points,
-            implement_down=False,
-            length=length,
-            fits=turn.missing == 0,
-            missing=turn.missing,
-            reverse=leg.reverse,
-        )
-
-
-def _pose(point: FloatArray, direction: FloatArray) -> tuple[float, float, float]:
-    return float(point[0]), float(point[1]), math.atan2(direction[1], direction[0])
+    return shapely.orient_polygons(Polygon(ground.exterior, holes))
 
 
 def _rings(part: Polygon) -> tuple[FloatArray, ...]:

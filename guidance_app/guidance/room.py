@@ -14,8 +14,8 @@ __all__ = ["TOUCH", "Room"]
 TOUCH = 0.05
 """Metres that body or implement may stick out: a lap along the boundary touches it with the implement's end."""
 
-POSES = 33
-"""Poses at which a candidate is checked, beside the traces of all corners between them."""
+SPACING, FEWEST, MOST = 1.0, 24, 150
+"""Metres between the poses at which a candidate is checked, and how many there are at least and at most."""
 
 TRACTOR_REAR = -0.6
 """Metres from the axle to the tractor's rear end."""
@@ -40,8 +40,13 @@ class Room:
         """For each existing candidate whether the whole machine stays inside all along."""
         if not len(moves.start):
             return np.zeros(0, dtype=bool)
-        stations = moves.total[:, None] * np.linspace(0.0, 1.0, POSES)
-        return self.fits_poses(poses_along(moves, stations))
+        return self.fits_poses(self.poses(moves))
+
+    def poses(self, moves: Manoeuvres) -> FloatArray:
+        """Poses (C, K, 3) along candidates, close enough to each other for a check."""
+        total = moves.total
+        count = int(np.clip(total.max() / SPACING, FEWEST, MOST))
+        return poses_along(moves, total[:, None] * np.linspace(0.0, 1.0, count))
 
     def fits_poses(self, poses: FloatArray) -> BoolArray:
         """The same for poses (C, K, 3); corners' traces between neighbouring poses are checked too."""
@@ -50,6 +55,11 @@ class Room:
         traces = shapely.linestrings(np.swapaxes(corners, 1, 2))
         inside: BoolArray = shapely.covers(self.ground, traces).all(axis=1)
         inside[inside] = shapely.covers(self.ground, outlines[inside]).all(axis=1)
+        return inside
+
+    def fits_each(self, poses: FloatArray) -> BoolArray:
+        """For single poses (M, 3) whether the machine stays inside there."""
+        inside: BoolArray = shapely.covers(self.ground, shapely.linestrings(self._corners(poses)))
         return inside
 
     def path_inside(self, poses: FloatArray) -> BoolArray:

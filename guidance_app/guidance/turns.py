@@ -1,28 +1,50 @@
-"""Turns between passes: the shortest drivable manoeuvre that stays inside with the whole machine.
+"""Turns between two poses: the shortest drivable manoeuvre that stays inside with the whole machine.
 
-Every candidate first runs straight on until the implement has worked the pass's end, and ends where the next pass
-begins. Candidates are compared by length; one that does not fit is given with the metres that are missing.
+Each begins by running straight on until the implement has worked the pass's end, and ends where the next pass begins.
+Where no manoeuvre from there fits, the tractor may first back up along the pass it has worked, or overrun the start of
+the next and back up to it, or drive backward all the way. What fits is compared by length; what does not fit is given
+with the metres that are missing, on a path that itself stays inside.
 """
 
+import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 
-from guidance_app.guidance.manoeuvres import WORDS, Manoeuvres, join, poses_along, with_straights
+from guidance_app.guidance.manoeuvres import (
+    IntArray,
+    Manoeuvres,
+    backed,
+    join,
+    poses_along,
+    stacked,
+    with_straights,
+)
 from guidance_app.guidance.request import PlanRequest
-from guidance_app.guidance.room import Room
+from guidance_app.guidance.room import BoolArray, Room
 from guidance_app.model import FloatArray
 
-__all__ = ["POINTS", "Leg", "Turn", "Turner", "poses_of"]
+__all__ = ["Leg", "Turn", "Turner", "leg_of", "turn_along"]
 
 POINTS = 60
-"""A turn never has more points."""
+"""A leg of a turn never has more points."""
 
 RADIUS_MARGIN = 1.002
 """Turns are laid on a circle wider by this, so that their chords do not bend more than the turning radius."""
 
-TRIES = 10
-"""Candidates checked for a turn, shortest first, before it counts as one that does not fit."""
+TRIES = 8
+"""Candidates of one kind that are checked for a turn, shortest first."""
+
+MOST_AT_ONCE = 16
+"""Candidates of one pair that are checked at a time at most."""
+
+BACKING = (0.5, 1.0, 1.75)
+"""Turning radii by which a tractor backs up along a pass when nothing shorter fits."""
+
+SMALLEST_MISSING = 0.01
+"""Metres; a turn that does not fit misses at least this."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,6 +53,7 @@ class Leg:
 
     points: FloatArray
     reverse: bool
+    length: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,13 +62,12 @@ class Turn:
 
     legs: tuple[Leg, ...]
     length: float
-    missing: float
-    tight: bool
+    missing: float = 0.0
 
-
-def poses_of(points: FloatArray, headings: FloatArray) -> FloatArray:
-    """Shape (N, 3): east, north, yaw; from points and headings clockwise from north."""
-    return np.column_stack([points, np.pi / 2 - headings])
+    @property
+    def fits(self) -> bool:
+        """Whether the machine stays inside."""
+        return self.missing == 0
 
 
 class Turner:
@@ -58,41 +80,138 @@ class Turner:
         self.out = max(request.offset_back, 0.0)
         self.into = max(-request.offset_back, 0.0)
 
-    def turns(self, starts: FloatArray, ends: FloatArray) -> list[Turn]:
-        """A turn for each pair of poses (M, 3), none of them longer than the shortest that fits."""
-        moves = self._candidates(starts, ends)
-        choice, fits = self._choose(moves, len(starts))
-        return [self._turn(moves.take(np.array([row])), bool(fit)) for row, fit in zip(choice, fits, strict=True)]
+    def turns(self, starts: FloatArray, ends: FloatArray) -> list[Turn | None]:
+        """The shortest turn that fits for each pair of poses (M, 3); None where nothing fits."""
+        found: list[Turn | None] = [None] * len(starts)
+        left = np.arange(len(starts))
+        for kind in (self.plain, self.awkward):
+            if len(left):
+                turns = kind(starts[left], ends[left])
+                for place, turn in zip(left, turns, strict=True):
+                    found[place] = turn
+                left = np.array([place for place in left if found[place] is None], dtype=int)
+        return found
 
-    def _candidates(self, starts: FloatArray, ends: FloatArray) -> Manoeuvres:
+    def plain(self, starts: FloatArray, ends: FloatArray) -> list[Turn | None]:
+        """The same, of the manoeuvres that begin and end forward."""
+        return self._shortest(self._plain(starts, ends), len(starts))
+
+    def awkward(self, starts: FloatArray, ends: FloatArray) -> list[Turn | None]:
+        """The same, of those that back up before, after or all the way; nothing where that is not allowed."""
+        if not self.reverse:
+            return [None] * len(starts)
+        kinds = [self._backing(starts, ends), self._backward(starts, ends)]
+        return self._shortest(stacked(kinds, len(starts)), len(starts))
+
+    def onto(self, start: FloatArray, ends: FloatArray) -> Manoeuvres:
+        """Candidates from a worked pass's end to each of many poses (M, 3) on the way."""
+        many = np.tile(start, (len(ends), 1))
+        words = join(_ahead(many, self.out), ends, self.radius, reverse=self.reverse)
+        return self._framed(words, 0.0, 0.0, into=0.0)
+
+    def off(self, starts: FloatArray, end: FloatArray) -> Manoeuvres:
+        """Candidates from each of many poses (M, 3) on the way to the start of a pass."""
+        many = np.tile(end, (len(starts), 1))
+        words = join(starts, _ahead(many, -self.into), self.radius, reverse=self.reverse)
+        rows = len(words.start)
+        return with_straights(words, np.zeros((rows, 1)), np.full((rows, 1), self.into))
+
+    def nearest(self, start: FloatArray, ends: FloatArray, beyond: FloatArray) -> tuple[int, Turn] | None:
+        """Of many end poses (M, 3) the one with the shortest turn, counting ``beyond`` (M,) metres more behind each."""
+        moves = self._plain(np.tile(start, (len(ends), 1)), ends)
+        words = len(moves.start) // len(ends)
+        total = moves.total + np.repeat(beyond, words)
+        order = np.argsort(total)[: TRIES * words]
+        order = order[np.isfinite(total[order])]
+        fits = self.room.fits(moves.take(order))
+        if not fits.any():
+            return None
+        row = int(order[np.argmax(fits)])
+        return row // words, turn_along(moves.take(np.array([row])))
+
+    def missing(self, start: FloatArray, end: FloatArray) -> float:
+        """Metres by which the machine sticks out at least, on the best of all manoeuvres from pose to pose."""
+        moves = self._plain(start[None], end[None])
+        moves = moves.take(np.argsort(moves.total)[:TRIES])
+        moves = moves.take(np.flatnonzero(np.isfinite(moves.total)))
+        worst = self.room.missing(self.room.poses(moves)) if len(moves.start) else np.zeros(0)
+        return max(SMALLEST_MISSING, float(worst.min(initial=self.radius)))
+
+    def _plain(self, starts: FloatArray, ends: FloatArray) -> Manoeuvres:
         words = join(_ahead(starts, self.out), _ahead(ends, -self.into), self.radius, reverse=self.reverse)
-        many = len(words.start)
-        return with_straights(words, np.full(many, self.out), np.full(many, self.into))
+        return self._framed(words, 0.0, 0.0)
 
-    def _choose(self, moves: Manoeuvres, pairs: int) -> tuple[np.ndarray, np.ndarray]:
-        """The row of each pair's choice and whether it fits; without a fit the shortest whose path is inside."""
+    def _backing(self, starts: FloatArray, ends: FloatArray) -> Manoeuvres:
+        """Backing up before the manoeuvre, or to the next pass's start after it, or both."""
+        metres = [0.0, *(part * self.radius for part in BACKING)]
+        ways = []
+        for first, last in itertools.product(metres, metres):
+            if first or last:
+                begin = _ahead(starts, self.out - first)
+                end = _ahead(ends, last if last else -self.into)
+                ways.append(self._framed(join(begin, end, self.radius, reverse=True), first, last))
+        return stacked(ways, len(starts))
+
+    def _backward(self, starts: FloatArray, ends: FloatArray) -> Manoeuvres:
+        words = backed(_ahead(starts, self.out), ends, self.radius)
+        return self._framed(words, 0.0, 0.0, into=0.0)
+
+    def _framed(self, words: Manoeuvres, first: float, last: float, into: float | None = None) -> Manoeuvres:
+        many = len(words.start)
+        into = self.into if into is None else into
+        before = np.tile([self.out, -first], (many, 1))
+        after = np.tile([0.0 if last else into, -last], (many, 1))
+        return with_straights(words, before, after)
+
+    def _shortest(self, moves: Manoeuvres, pairs: int) -> list[Turn | None]:
+        """Each pair's shortest candidate that fits; ever more candidates are checked at a time."""
         total = moves.total.reshape(pairs, -1)
         ranked = np.argsort(total, axis=1)
-        base = np.arange(pairs) * total.shape[1]
-        choice = base + ranked[:, 0]
-        fits = np.zeros(pairs, dtype=bool)
-        for rank in range(min(TRIES, ranked.shape[1])):
-            open_pairs = np.flatnonzero(~fits & np.isfinite(total[np.arange(pairs), ranked[:, rank]]))
-            if not len(open_pairs):
-                break
-            rows = base[open_pairs] + ranked[open_pairs, rank]
-            good = self.room.fits(moves.take(rows))
-            choice[open_pairs[good]] = rows[good]
-            fits[open_pairs[good]] = True
-        return choice, fits
+        found: list[Turn | None] = [None] * pairs
+        left = np.arange(pairs)
+        low, many = 0, 1
+        while len(left) and low < total.shape[1]:
+            tried = ranked[left, low : low + many]
+            rows = left[:, None] * total.shape[1] + tried
+            fits = np.isfinite(total[left[:, None], tried])
+            fits[fits] = self.room.fits(moves.take(rows[fits]))
+            good = fits.any(axis=1)
+            for place, row in zip(left[good], rows[good, fits[good].argmax(axis=1)], strict=True):
+                found[place] = turn_along(moves.take(np.array([row])))
+            left = left[~good]
+            low, many = low + many, min(2 * many, MOST_AT_ONCE)
+        return found
 
-    def _turn(self, move: Manoeuvres, fit: bool) -> Turn:
-        stations = _stations(move)
-        poses = poses_along(move, stations[None])
-        missing = 0.0 if fit else max(0.01, float(self.room.missing(poses)[0]))
-        length = float(move.total[0])
-        straight = float(np.hypot(*(poses[0, -1, :2] - poses[0, 0, :2])))
-        return Turn(_legs(move, stations, poses[0]), length, missing, tight=straight < 2 * self.radius)
+
+def turn_along(move: Manoeuvres) -> Turn:
+    """The turn of a single candidate, cut where the gear changes."""
+    lengths = move.lengths[0]
+    joints = np.concatenate([[0.0], np.cumsum(np.abs(lengths))])
+    legs = []
+    pieces = [place for place in range(len(lengths)) if abs(lengths[place]) > 1e-6]
+    for reverse, group in itertools.groupby(pieces, key=lambda place: bool(lengths[place] < 0)):
+        run = list(group)
+        legs.append(_leg(move, joints, run, reverse))
+    return Turn(tuple(legs), float(joints[-1]))
+
+
+def _leg(move: Manoeuvres, joints: FloatArray, pieces: Sequence[int], reverse: bool) -> Leg:
+    """Points of neighbouring pieces: the ends of straights, and arcs in even steps."""
+    arcs = [place for place in pieces if move.turns[0, place]]
+    bent = sum(joints[place + 1] - joints[place] for place in arcs)
+    spare = POINTS - len(pieces) - 1
+    stations = [joints[pieces[0]]]
+    for place in pieces:
+        size = joints[place + 1] - joints[place]
+        steps = max(1, min(int(spare * size / bent), int(np.ceil(size / (0.1 * move.radius))))) if place in arcs else 1
+        stations.extend(joints[place] + size * np.arange(1, steps + 1) / steps)
+    poses = poses_along(move, np.array(stations)[None])[0]
+    return leg_of(poses[:, :2], reverse)
+
+
+def leg_of(points: FloatArray, reverse: bool) -> Leg:  # noqa: FBT001
+    """A leg along these points."""
+    return Leg(points.copy(), reverse, float(shapely.length(shapely.linestrings(points))))
 
 
 def _ahead(poses: FloatArray, metres: float) -> FloatArray:
@@ -100,24 +219,3 @@ def _ahead(poses: FloatArray, metres: float) -> FloatArray:
     moved[:, 0] += metres * np.cos(poses[:, 2])
     moved[:, 1] += metres * np.sin(poses[:, 2])
     return moved
-
-
-def _stations(move: Manoeuvres) -> FloatArray:
-    """Metres from the start of at most ``POINTS`` points, every joint among them."""
-    joints = np.concatenate([[0.0], np.cumsum(np.abs(move.lengths[0]))])
-    even = np.linspace(0.0, joints[-1], POINTS - len(joints))
-    stations = np.unique(np.concatenate([even, joints]))
-    keep = np.concatenate([[True], np.diff(stations) > 1e-6])
-    return stations[keep]
-
-
-def _legs(move: Manoeuvres, stations: FloatArray, poses: FloatArray) -> tuple[Leg, ...]:
-    """Cut where the gear changes; neighbouring legs share the point."""
-    joints = np.cumsum(np.abs(move.lengths[0]))
-    backward = move.lengths[0][np.minimum(np.searchsorted(joints, (stations[1:] + stations[:-1]) / 2), len(joints) - 1)]
-    reverse = backward < 0
-    changes = [0, *(np.flatnonzero(np.diff(reverse.astype(int))) + 1), len(reverse)]
-    return tuple(
-        Leg(poses[low : high + 1, :2].copy(), bool(reverse[low]))
-        for low, high in zip(changes, changes[1:], strict=False)
-    )

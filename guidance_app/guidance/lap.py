@@ -1,0 +1,80 @@
+"""A headland lap: a closed line, or one with corners at which the machine backs up along the next side.
+
+A lap may be begun anywhere on its line.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from guidance_app.guidance.ring import Ring
+from guidance_app.guidance.turns import Leg, Turn, leg_of
+from guidance_app.model import FloatArray
+
+__all__ = ["Corner", "Lap", "Side"]
+
+SHORTEST = 0.1
+"""Metres; a shorter rest of a corner is not drawn."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Corner:
+    """The implement is lifted at ``lift`` and the corner passed at ``end``, metres along the lap (``lift`` may lie
+    before its seam); the next side begins at ``start`` (east, north), behind the corner's end."""
+
+    lift: float
+    end: float
+    start: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Side:
+    """A stretch to work, shape (N, 2), and the turn that leads to it from the side before; None for the first."""
+
+    points: FloatArray
+    closed: bool
+    approach: Turn | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lap:
+    """One ring to drive. ``place`` counts from the boundary, from 0."""
+
+    place: int
+    line: Ring
+    corners: tuple[Corner, ...]
+
+    @property
+    def points(self) -> FloatArray:
+        """Shape (N, 2), the first point not repeated."""
+        return self.line.points
+
+    def poses(self, step: float) -> tuple[FloatArray, FloatArray]:
+        """Poses (M, 3) at which the lap may be begun, and how far along each is; not where the implement is up."""
+        along = np.arange(0.0, self.line.length, step)
+        for corner in self.corners:
+            along = along[(along < corner.lift) | (along > corner.end)]
+        return self.line.poses(along), along
+
+    def sides_from(self, begin: float) -> Iterator[Side]:
+        """The sides in driving order when the lap is begun at ``begin`` metres along its line."""
+        if not self.corners:
+            yield Side(self.line.stretch(begin, begin)[:-1], closed=True, approach=None)
+            return
+        first = next((place for place, corner in enumerate(self.corners) if corner.lift >= begin), 0)
+        corners = [*self.corners[first:], *self.corners[:first]]
+        yield Side(self.line.stretch(begin, corners[0].lift), closed=False, approach=None)
+        for corner, following in zip(corners, [*corners[1:], None], strict=True):
+            target = begin if following is None else following.lift
+            points = np.vstack([corner.start[None], self.line.stretch(corner.end, target)])
+            yield Side(points, closed=False, approach=self._round(corner))
+
+    def _round(self, corner: Corner) -> Turn:
+        """The rest of the corner with the implement up, then straight back to where the next side begins."""
+        legs: list[Leg] = []
+        if corner.end - corner.lift > SHORTEST:
+            legs.append(leg_of(self.line.stretch(corner.lift, corner.end), reverse=False))
+        end = self.line.at(np.array([corner.end]))[0]
+        legs.append(leg_of(np.stack([end, corner.start]), reverse=True))
+        return Turn(tuple(legs), sum(leg.length for leg in legs))

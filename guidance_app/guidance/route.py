@@ -1,0 +1,166 @@
+"""The order in which cells are worked, and at which of its four corners each is entered.
+
+Within a cell the operation method says the order of passes; this module says which side of the cell counts as the
+first, and in which direction the first pass is driven. From pass to pass the nearer end is taken, which is the
+to-and-fro of every farmer wherever the field is regular.
+"""
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from guidance_app.guidance.cells import Piece, Strips
+from guidance_app.guidance.pattern import PassOrder
+from guidance_app.guidance.request import PlanRequest
+from guidance_app.guidance.task import Task
+from guidance_app.model import FloatArray, SegmentKind
+
+__all__ = ["Cell", "Run", "route"]
+
+MOST_EXACT = 5
+"""Cells up to which every order is compared; with more the nearest is taken next."""
+
+Order = Callable[[int], PassOrder]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cell:
+    """Neighbouring pieces, by row, and the frame of their strips."""
+
+    pieces: tuple[Piece, ...]
+    strips: Strips
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Run:
+    """A cell driven from one of its corners: its pieces' places in driving order, and which are driven along."""
+
+    cell: Cell
+    sequence: tuple[int, ...]
+    along: tuple[bool, ...]
+    from_last: bool
+
+    @property
+    def start(self) -> FloatArray:
+        """Where it begins, (2,): east, north."""
+        return self._end(0, start=True)
+
+    @property
+    def end(self) -> FloatArray:
+        """Where it ends."""
+        return self._end(-1, start=False)
+
+    def _end(self, place: int, *, start: bool) -> FloatArray:
+        return self.points(place)[0 if start else -1]
+
+    def points(self, place: int) -> FloatArray:
+        """The line of one pass in driving order, (2, 2)."""
+        piece = self.cell.pieces[self.sequence[place]]
+        across = self.cell.strips.middle(piece.row)
+        ends = np.array([(piece.low, across), (piece.high, across)])
+        return self.cell.strips.east_north(ends if self.along[place] else ends[::-1])
+
+    def tasks(self, done: int) -> list[Task]:
+        """The passes, numbered from ``done`` + 1 across the cell from the side at which it is entered."""
+        count = len(self.sequence)
+        numbers = [count - place if self.from_last else place + 1 for place in self.sequence]
+        return [Task(SegmentKind.PASS, done + number, self.points(place)) for place, number in enumerate(numbers)]
+
+
+def route(cells: Sequence[Cell], order: Order, request: PlanRequest) -> list[Run]:
+    """Every cell once, from the start towards the exit, with little driving between."""
+    choices = [_runs(cell, order(len(cell.pieces))) for cell in cells]
+    if not choices:
+        return []
+    first = _preferred(choices, request)
+    if len(choices) <= MOST_EXACT:
+        return _best_of_all(choices, first, request)
+    return _nearest_next(choices, first, request)
+
+
+def _runs(cell: Cell, order: PassOrder) -> list[Run]:
+    """The four ways into a cell; two when all passes are driven one way or there is only one pass."""
+    sides = (False, True) if len(cell.pieces) > 1 else (False,)
+    return [_run(cell, order, from_last, along) for from_last in sides for along in (True, False)]
+
+
+def _run(cell: Cell, order: PassOrder, from_last: bool, along: bool) -> Run:  # noqa: FBT001
+    count = len(cell.pieces)
+    sequence = tuple(count - 1 - place if from_last else place for place in order.sequence)
+    ways = [along]
+    for before, here in itertools.pairwise(sequence):
+        ways.append(along if order.one_way else _nearer(cell.pieces[before], cell.pieces[here], ways[-1]))
+    return Run(cell, sequence, tuple(ways), from_last)
+
+
+def _nearer(before: Piece, here: Piece, along: bool) -> bool:  # noqa: FBT001
+    """Whether the next piece is driven along the strips' heading, from its end nearer to where the last one ended."""
+    at = before.high if along else before.low
+    return abs(here.low - at) < abs(here.high - at)
+
+
+def _preferred(choices: Sequence[Sequence[Run]], request: PlanRequest) -> list[tuple[int, int]]:
+    """The runs with which the work may begin, as (cell, way); every one when any corner will do."""
+    everything = [(cell, way) for cell, ways in enumerate(choices) for way in range(len(ways))]
+    if request.start_corner == "nearest":
+        return everything
+    from_last = request.start_corner.startswith("last")
+    along = request.start_corner.endswith("right")
+    cell = -1 if from_last else 0
+    row = (max if from_last else min)(range(len(choices)), key=lambda place: choices[place][0].cell.pieces[cell].row)
+    wanted = [
+        (row, way)
+        for way, run in enumerate(choices[row])
+        if (run.from_last == from_last or len(run.sequence) == 1) and run.along[0] == along
+    ]
+    return wanted or everything
+
+
+def _best_of_all(choices: Sequence[Sequence[Run]], first: Sequence[tuple[int, int]], request: PlanRequest) -> list[Run]:
+    """The order with the least distance between runs, over all orders (dynamic programming over sets of cells)."""
+    states: dict[tuple[int, int, int], tuple[float, tuple[Run, ...]]] = {}
+    for cell, way in first:
+        run = choices[cell][way]
+        states[1 << cell, cell, way] = (_apart(request.start, run.start), (run,))
+    for _ in range(len(choices) - 1):
+        states = _extended(states, choices)
+    return list(min(states.values(), key=lambda state: state[0] + _apart(request.exit, state[1][-1].end))[1])
+
+
+def _extended(
+    states: dict[tuple[int, int, int], tuple[float, tuple[Run, ...]]], choices: Sequence[Sequence[Run]]
+) -> dict[tuple[int, int, int], tuple[float, tuple[Run, ...]]]:
+    longer: dict[tuple[int, int, int], tuple[float, tuple[Run, ...]]] = {}
+    for (seen, _, _), (cost, runs) in states.items():
+        for cell, ways in enumerate(choices):
+            if seen >> cell & 1:
+                continue
+            for way, run in enumerate(ways):
+                key = (seen | 1 << cell, cell, way)
+                total = cost + _apart(runs[-1].end, run.start)
+                if key not in longer or total < longer[key][0]:
+                    longer[key] = (total, (*runs, run))
+    return longer
+
+
+def _nearest_next(
+    choices: Sequence[Sequence[Run]], first: Sequence[tuple[int, int]], request: PlanRequest
+) -> list[Run]:
+    cell, way = min(first, key=lambda each: _apart(request.start, choices[each[0]][each[1]].start))
+    runs = [choices[cell][way]]
+    left = set(range(len(choices))) - {cell}
+    while left:
+        cell, run = min(
+            ((cell, run) for cell in left for run in choices[cell]),
+            key=lambda each: _apart(runs[-1].end, each[1].start),
+        )
+        runs.append(run)
+        left.remove(cell)
+    return runs
+
+
+def _apart(one: FloatArray | tuple[float, float] | None, other: FloatArray) -> float:
+    return 0.0 if one is None else math.hypot(one[0] - other[0], one[1] - other[1])

@@ -1,0 +1,186 @@
+"""Transfers: from one place of the field to another along the headland, on the lines that the laps use.
+
+A transfer leaves its pass, joins a lap's line in either direction, follows it, and leaves it for the next pass. The
+straight way over the mainland is taken only where it is much shorter, since it runs over the crop. Where nothing fits,
+the transfer is drawn along the boundary, inside, and flagged.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+from shapely import MultiLineString, Polygon
+
+from guidance_app.guidance.detour import Detour
+from guidance_app.guidance.manoeuvres import IntArray, Manoeuvres
+from guidance_app.guidance.ring import Ring
+from guidance_app.guidance.room import BoolArray
+from guidance_app.guidance.turns import Leg, Turn, Turner, leg_of, turn_along
+from guidance_app.model import FloatArray
+
+__all__ = ["Ways"]
+
+TRACK_STEP = 2.0
+"""Metres between the places where a transfer may join or leave a lap's line."""
+
+REACH = 8.0
+"""Turning radii within which a lap's line is looked for around a pass's end."""
+
+CROP = 1.0
+"""A metre over the mainland counts as much more than a metre on the headland."""
+
+BATCH = 12
+"""Ways of joining and of leaving that are checked at a time, those that promise most first."""
+
+ROUNDS = 25
+"""Batches after which a transfer counts as one that does not fit."""
+
+
+class Ways:
+    """Finds the way between any two poses of one field."""
+
+    def __init__(self, turner: Turner, rings: Sequence[FloatArray], mainland: Sequence[Polygon]) -> None:
+        self._turner = turner
+        self._tracks = _Tracks(turner, rings)
+        self._mainland = shapely.multipolygons(list(mainland)) if mainland else None
+        self._detour = Detour(turner.room.polygon)
+        if self._mainland is not None:
+            shapely.prepare(self._mainland)
+
+    def way(self, start: FloatArray, end: FloatArray) -> Turn:
+        """The cheapest way from pose to pose; one that does not fit is drawn inside and says how much is missing."""
+        pair = (start[None], end[None])
+        direct = self._turner.plain(*pair)[0]
+        cost = np.inf if direct is None else self._cost(direct)
+        if direct is not None and cost <= direct.length + 2 * self._turner.radius:
+            return direct
+        along = self._along_laps(start, end, cost)
+        return along or direct or self._turner.awkward(*pair)[0] or self._flagged(start, end)
+
+    def _cost(self, turn: Turn) -> float:
+        if self._mainland is None:
+            return turn.length
+        lines = MultiLineString([leg.points for leg in turn.legs])
+        return turn.length + CROP * float(shapely.length(shapely.intersection(lines, self._mainland)))
+
+    def _flagged(self, start: FloatArray, end: FloatArray) -> Turn:
+        leg = leg_of(self._detour.path(start[:2], end[:2]), reverse=False)
+        return Turn((leg,), leg.length, self._turner.missing(start, end))
+
+    def _along_laps(self, start: FloatArray, end: FloatArray, limit: float) -> Turn | None:
+        """The shortest way on a lap's line that fits and costs less than ``limit``."""
+        reach = REACH * self._turner.radius
+        joins, leaves = self._tracks.near(start, reach), self._tracks.near(end, reach)
+        if not len(joins) or not len(leaves):
+            return None
+        onto = _Side(self._turner, self._turner.onto(start, self._tracks.poses[joins]), len(joins))
+        off = _Side(self._turner, self._turner.off(self._tracks.poses[leaves], end), len(leaves))
+        between = self._tracks.between(joins, leaves)
+        for _ in range(ROUNDS):
+            onto.check(between + off.promised[None, :], limit)
+            off.check(between.T + onto.promised[None, :], limit)
+            sums = onto.certain[:, None] + between + off.certain[None, :]
+            row, column = np.unravel_index(int(sums.argmin()), sums.shape)
+            promised = (onto.promised[:, None] + between + off.promised[None, :]).min()
+            if min(promised, float(sums[row, column])) >= limit:
+                return None
+            if sums[row, column] <= promised + 1e-9:
+                ridden = self._tracks.stretch(int(joins[row]), int(leaves[column]))
+                return _chained(onto.turn(int(row)), ridden, off.turn(int(column)))
+        return None
+
+
+class _Side:
+    """The candidates for joining, or for leaving, some places of the laps' lines.
+
+    ``promised`` (P,) is the length of the best candidate at each place that is not known to be out, ``certain`` that of
+    the best one known to fit.
+    """
+
+    def __init__(self, turner: Turner, moves: Manoeuvres, places: int) -> None:
+        self._turner = turner
+        self._moves = moves
+        self._open = moves.total.reshape(places, -1)
+        self._words = self._open.shape[1]
+        self._fitting = np.zeros(places, dtype=int)
+        self.certain = np.full(places, np.inf)
+        self._promise()
+
+    def check(self, beyond: FloatArray, limit: float) -> None:
+        """Checks the most promising candidates, ``beyond`` (P, Q) metres being driven after each at least."""
+        rest = beyond.min(axis=1, initial=np.inf)
+        worth = np.where(self.promised < self.certain, self.promised + rest, np.inf)
+        places = np.argsort(worth)[:BATCH]
+        places = places[worth[places] < limit]
+        if not len(places):
+            return
+        words = self._open[places].argmin(axis=1)
+        rows = places * self._words + words
+        fits = self._turner.room.fits(self._moves.take(rows))
+        good = places[fits]
+        self.certain[good] = self._open[good, words[fits]]
+        self._fitting[good] = rows[fits]
+        self._open[places, words] = np.inf
+        self._promise()
+
+    def turn(self, place: int) -> Turn:
+        """The turn of the best candidate that fits there."""
+        return turn_along(self._moves.take(self._fitting[place : place + 1]))
+
+    def _promise(self) -> None:
+        self.promised = np.minimum(self._open.min(axis=1), self.certain)
+
+
+class _Tracks:
+    """All laps' lines in both directions as one table of poses (M, 3)."""
+
+    def __init__(self, turner: Turner, rings: Sequence[FloatArray]) -> None:
+        self._rings = [Ring(points) for ring in rings for points in (ring, ring[::-1])]
+        along = [np.arange(0.0, ring.length, TRACK_STEP) for ring in self._rings]
+        self._along = np.concatenate([*along, np.zeros(0)])
+        self._track = np.repeat(np.arange(len(along)), [len(each) for each in along])
+        poses = [ring.poses(each) for ring, each in zip(self._rings, along, strict=True)]
+        self.poses: FloatArray = np.concatenate([*poses, np.zeros((0, 3))])
+        self._free = turner.room.fits_each(self.poses)
+        self._blocked = np.concatenate([[0], np.cumsum(~self._free)])
+        self._length = np.array([ring.length for ring in self._rings])
+
+    def near(self, pose: FloatArray, reach: float) -> IntArray:
+        """Rows of poses within reach at which the machine fits."""
+        apart = np.hypot(*(self.poses[:, :2] - pose[:2]).T)
+        return np.flatnonzero((apart < reach) & self._free)
+
+    def between(self, joins: IntArray, leaves: IntArray) -> FloatArray:
+        """Metres along the line (J, L) from each row to each; infinite on another line or where the way is blocked."""
+        track = self._track[joins][:, None]
+        metres = np.mod(self._along[leaves][None] - self._along[joins][:, None], self._length[track])
+        same = track == self._track[leaves][None]
+        return np.where(same & ~self._blocked_between(joins, leaves), metres, np.inf)
+
+    def _blocked_between(self, joins: IntArray, leaves: IntArray) -> BoolArray:
+        low, high = self._blocked[joins][:, None], self._blocked[leaves][None]
+        ends = np.searchsorted(self._track, np.arange(len(self._rings) + 1))
+        track = self._track[joins][:, None]
+        whole = self._blocked[ends[track + 1]] - self._blocked[ends[track]]
+        forward = self._along[leaves][None] >= self._along[joins][:, None]
+        blocked: BoolArray = np.where(forward, high - low, whole + high - low) > 0
+        return blocked
+
+    def stretch(self, join: int, leave: int) -> FloatArray:
+        """Points of the line from one row to another in its direction; a single point when they are the same."""
+        ring = self._rings[self._track[join]]
+        if join == leave:
+            return self.poses[join : join + 1, :2]
+        return ring.stretch(float(self._along[join]), float(self._along[leave]))
+
+
+def _chained(onto: Turn, ridden: FloatArray, off: Turn) -> Turn:
+    """The parts as one turn; neighbouring legs in the same gear become one."""
+    middle = [leg_of(ridden, reverse=False)] if len(ridden) > 1 else []
+    legs: list[Leg] = []
+    for leg in (*onto.legs, *middle, *off.legs):
+        if legs and legs[-1].reverse == leg.reverse:
+            legs[-1] = leg_of(np.vstack([legs[-1].points, leg.points[1:]]), leg.reverse)
+        else:
+            legs.append(leg)
+    return Turn(tuple(legs), sum(leg.length for leg in legs))
