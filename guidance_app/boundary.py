@@ -171,13 +171,13 @@ def _check_degrees(number: int, longitude: float, latitude: float) -> None:
         raise BoundaryError(msg)
     if abs(longitude) <= 180 and abs(latitude) <= 89:
         return
-    if abs(longitude) <= 89 and abs(latitude) <= 180:
+    if abs(longitude) <= 180 and abs(latitude) <= 90:
+        msg = f"corner {number} is less than a degree from a pole"
+    elif abs(longitude) <= 89 and abs(latitude) <= 180:
         msg = (
             f"corner {number} has a latitude of {latitude:g} degrees, which is not on earth:"
             " latitude and longitude look swapped"
         )
-    elif abs(longitude) <= 180 and abs(latitude) <= 90:
-        msg = f"corner {number} is less than a degree from a pole"
     else:
         msg = (
             f"corner {number} at {longitude:g}, {latitude:g} is not a longitude and latitude in degrees;"
@@ -209,7 +209,7 @@ def _unwrapped(longitudes: FloatArray) -> FloatArray:
 def _repaired(lonlat: FloatArray, frame: FieldFrame, what: str, remarks: list[str]) -> FloatArray | None:
     """The ring's corners without the closing one, shape (N, 2) in degrees; None when it encloses nothing."""
     points = frame.array_from_lonlat(lonlat)
-    if not np.all(np.isfinite(points)) or np.abs(points).max() > WIDEST_FIELD:
+    if not np.all(np.isfinite(points)) or np.abs(points).max() > WIDEST_FIELD / 2:
         msg = f"the corners of {what} are more than {WIDEST_FIELD / 1000:g} km apart: one of them must be wrong"
         raise BoundaryError(msg)
     if len(points) > 1 and math.dist(points[0], points[-1]) < SAME_CORNER:
@@ -223,12 +223,17 @@ def _repaired(lonlat: FloatArray, frame: FieldFrame, what: str, remarks: list[st
     pointed = _without_spikes(points, distinct)
     if len(pointed) < len(distinct):
         remarks.append(f"{what} had spikes without width; {len(distinct) - len(pointed)} corners are dropped")
-    if len(pointed) < 3 or shapely.Polygon(points[pointed]).area < NO_AREA:
+    if len(pointed) < 3 or _is_nothing(shapely.Polygon(points[pointed])):
         if what != "the boundary":
             remarks.append(f"{what} encloses nothing and is dropped")
         return None
     corners: FloatArray = lonlat[pointed]
     return corners
+
+
+def _is_nothing(polygon: shapely.Polygon) -> bool:
+    """Whether the ring encloses no ground; one that crosses itself may have no area and yet be much."""
+    return bool(polygon.is_valid) and polygon.area < NO_AREA
 
 
 def _without_repeats(points: FloatArray, keep: list[int]) -> list[int]:

@@ -1,5 +1,6 @@
 """Documents to files and back: found by name, written whole, never overwritten unseen, backed up as one zip."""
 
+from guidance_app.store.backup import Limits, finish_restore, restore, write_backup
 from guidance_app.store.documents_folder import Named, Removed, Store, StoreConflictError
 from guidance_app.store.files import StoreError, write_file
 from guidance_app.store.folders import SAMPLE_RECORDING, copy_sample, data_folder, sample_folder
@@ -8,6 +9,7 @@ from guidance_app.store.reading import Problem, Stored
 
 __all__ = [
     "SAMPLE_RECORDING",
+    "Limits",
     "Named",
     "Problem",
     "Removed",
@@ -18,7 +20,10 @@ __all__ = [
     "copy_sample",
     "data_folder",
     "field_from_file",
+    "finish_restore",
     "load_job",
+    "restore",
     "sample_folder",
+    "write_backup",
     "write_file",
 ]

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from guidance_app.documents import Document, FieldDocument, Implement, Operation, Receiver, Settings, Tractor
+from guidance_app.store.backup import finish_restore
 from guidance_app.store.files import FolderLock, StoreError, free_path, move, safe_stem, why, write_atomically
 from guidance_app.store.migrations import MIGRATIONS, Migration, encoded, kind_name
 from guidance_app.store.reading import PATTERNS, Problem, Reader, Stored, home_of, name_of
@@ -47,10 +48,12 @@ class StoreConflictError(StoreError):
 class Store:
     """The documents under one data folder. Several threads and several programs may use it at once.
 
-    Nothing is created before the first save. ``migrations`` lift older documents.
+    Nothing is created before the first save, but a restore that was cut off is finished. ``migrations`` lift older
+    documents.
     """
 
     def __init__(self, root: Path, migrations: Mapping[tuple[str, int], Migration] = MIGRATIONS) -> None:
+        finish_restore(root)
         self.root = root
         self._migrations = migrations
         self._lock = FolderLock(root)
@@ -113,7 +116,7 @@ class Store:
             if document.name == name:
                 return stored.revision
             if self._current(document) is not None:
-                msg = f"a {kind_name(kind)} '{document.name}' exists already"
+                msg = f"the name '{document.name}' is in use by another {kind_name(kind)}"
                 raise StoreError(msg)
             if isinstance(document, FieldDocument):
                 return self._rename_field(stored.path, document)
@@ -221,7 +224,7 @@ class Store:
         document = stored.document
         with self._lock.writing():
             if self._current(document) is not None:
-                msg = f"a {kind_name(type(document))} '{document.name}' exists already; rename one of them first"
+                msg = f"the name '{document.name}' is in use by another {kind_name(type(document))}; rename that first"
                 raise StoreError(msg)
             move(_whole(stored.path), _whole(self._new_path(document)))
 

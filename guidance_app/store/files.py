@@ -15,6 +15,7 @@ import threading
 import unicodedata
 from collections.abc import Iterator
 from pathlib import Path
+from typing import BinaryIO
 
 __all__ = [
     "FolderLock",
@@ -24,6 +25,8 @@ __all__ = [
     "read_bounded",
     "revision_of",
     "safe_stem",
+    "sync_file",
+    "sync_folder",
     "why",
     "write_atomically",
     "write_file",
@@ -99,14 +102,13 @@ def write_atomically(path: Path, content: bytes) -> str:
         try:
             with temporary.open("wb") as file:
                 file.write(content)
-                file.flush()
-                os.fsync(file.fileno())
+                sync_file(file)
             temporary.replace(path)
         except OSError:
             with contextlib.suppress(OSError):
                 temporary.unlink()
             raise
-        _sync_folder(path.parent)
+        sync_folder(path.parent)
     except OSError as error:
         msg = f"{path} cannot be written: {why(error)}"
         raise StoreError(msg) from error
@@ -126,8 +128,8 @@ def move(source: Path, target: Path) -> None:
         if target.exists():
             raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST))
         source.rename(target)
-        _sync_folder(target.parent)
-        _sync_folder(source.parent)
+        sync_folder(target.parent)
+        sync_folder(source.parent)
     except OSError as error:
         msg = f"{source} cannot be moved to {target}: {why(error)}"
         raise StoreError(msg) from error
@@ -189,11 +191,17 @@ class FolderLock:
         return descriptor
 
 
+def sync_file(file: BinaryIO) -> None:
+    """Returns when what was written is on the disk."""
+    file.flush()
+    os.fsync(file.fileno())
+
+
 def _make_folders(folder: Path) -> None:
     missing = [each for each in (folder, *folder.parents) if not each.exists()]
     folder.mkdir(parents=True, exist_ok=True)
     for made in reversed(missing):
-        _sync_folder(made.parent)
+        sync_folder(made.parent)
 
 
 if sys.platform == "win32":
@@ -202,7 +210,7 @@ if sys.platform == "win32":
     def _lock(descriptor: int) -> None:
         msvcrt.locking(descriptor, msvcrt.LK_LOCK, 1)
 
-    def _sync_folder(folder: Path) -> None:
+    def sync_folder(folder: Path) -> None:
         """Windows has no such call; NTFS journals the rename itself."""
 
 else:
@@ -211,7 +219,8 @@ else:
     def _lock(descriptor: int) -> None:
         fcntl.flock(descriptor, fcntl.LOCK_EX)
 
-    def _sync_folder(folder: Path) -> None:
+    def sync_folder(folder: Path) -> None:
+        """Returns when the names in the folder are on the disk."""
         descriptor = os.open(folder, os.O_RDONLY)
         try:
             os.fsync(descriptor)

@@ -47,7 +47,7 @@ class Stored(Generic[D]):
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """A file that did not load, and why. ``set_aside`` is where it lies now; None when it was left in its place.
+    """A file that did not load, and why. ``set_aside`` is where it lies now, None when it was left in its place.
 
     ``newer`` is the name of the document in it, '' if unknown, when only a newer program can read it; else None.
     """
@@ -98,8 +98,8 @@ class Reader:
 
     def _scan(self, kind: type[D]) -> list[Stored[D]]:
         for aside in sorted(self.root.glob(f"{PATTERNS[kind]}{BROKEN}*")):
-            sentence = f"{aside} was set aside because it could not be read; repair it or delete it"
-            self._problems.setdefault(aside, Problem(aside, sentence, aside))
+            if aside not in self._problems:
+                self._problems[aside] = Problem(aside, self._why_aside(aside, kind), aside)
         found: dict[tuple[str, str], Stored[D]] = {}
         for path in sorted(self.root.glob(PATTERNS[kind])):
             stored = self._read(path, kind)
@@ -161,9 +161,17 @@ class Reader:
             if self._is_broken(path, kind):
                 aside = free_path(path.parent, path.name + BROKEN)
                 move(path, aside)
-                sentence = f"{path} cannot be read and was set aside as {aside.name}: {reason}"
-                self._problems[aside] = Problem(path, sentence, aside)
+                self._problems[aside] = Problem(aside, self._why_aside(aside, kind), aside)
                 del self._problems[path]
+
+    def _why_aside(self, aside: Path, kind: type[Document]) -> str:
+        try:
+            decoded(read_bounded(aside), kind, self._migrations)
+        except StoreError as error:
+            return f"{aside} was set aside because it cannot be read: {error}"
+        except OSError as error:
+            return f"{aside} was set aside and cannot be read: {why(error)}"
+        return f"{aside} was set aside, but can be read: take '{BROKEN}' off its name"
 
     def _is_broken(self, path: Path, kind: type[Document]) -> bool:
         try:
