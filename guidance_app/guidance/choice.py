@@ -6,9 +6,11 @@ in this order:
 
 1. A pass that the driver took stays until the tractor has been on it.
 2. A done pass that has been left, over its end or by turning away, gives way to the next of the order.
-3. Where the implement is lowered, a pass within half a spacing and along the heading is meant, done or not.
+3. Where the implement is lowered off the target, a pass within half a spacing and along the heading is meant, done or
+   not, if it is nearer by a fifth of a spacing.
 4. A pass not yet done that is nearer by a fifth of a spacing and within 30 degrees of the heading, for a second and
-   two metres, takes over; not while the tractor follows the planned way to its target.
+   two metres, takes over. Against a plan's order it has to be so for three seconds and ten metres, and not on the
+   planned way to the target: a lap's square corner or a way along another pass is not a wish to drive that one.
 """
 
 import copy
@@ -17,9 +19,9 @@ from collections.abc import Set
 
 from guidance_app.guidance.itinerary import GuideLine, Itinerary
 from guidance_app.guidance.progress import Progress
-from guidance_app.guidance.reading import Reading, Seen, off_axis
+from guidance_app.guidance.reading import COME, Reading, Seen, off_axis
 
-__all__ = ["Choice"]
+__all__ = ["ENDLESS_DONE", "Choice"]
 
 TURNED_AWAY = math.radians(60)
 """Turned so far from the pass, the tractor has left it even with the implement down."""
@@ -33,9 +35,12 @@ ALONG = math.radians(30)
 CLEARLY_NEARER = 0.2
 """In swath spacings: by so much another pass has to be nearer."""
 
-SETTLED_TIME = 1.0
-SETTLED_DISTANCE = 2.0
+SETTLED = (1.0, 2.0)
+SETTLED_AGAINST_PLAN = (3.0, 10.0)
 """For so long (s) and so far (m) another pass has to be the better one."""
+
+ENDLESS_DONE = 20.0
+"""An endless pass has no length: it counts as done when it is left after so many metres of work."""
 
 LAP_CLOSED = 2.0
 """Metres of a lap that may be missing when it is finished with the implement down."""
@@ -70,12 +75,12 @@ class Choice:
         if self.engaged and not _lap_closed(reading.line, progress):
             self._better = None
             return key
-        if key in progress.done and not self.held and (self.engaged or _has_left(reading)):
+        if _is_done(reading.line, progress) and not self.held and (self.engaged or _has_left(reading)):
             self.engaged = False
-            following = self.itinerary.following(key, progress.done, side)
+            following = self.itinerary.following(key, progress.done, side or _turned_to(reading))
             return key if following is None else following
         if lowered and not reading.on_pass:
-            return self._lowered_on(seen, key)
+            return self._lowered_on(seen, reading)
         if self.held or self._on_the_way(seen, key):
             self._better = None
             return key
@@ -91,26 +96,30 @@ class Choice:
 
     def _on_the_way(self, seen: Seen, key: int) -> bool:
         way = self.itinerary.way_to(key)
-        return way is not None and way.passes_by(seen.east, seen.north, 0.5 * self.spacing)
+        return way is not None and way.passes_by(seen.east, seen.north, COME * self.spacing)
 
-    def _lowered_on(self, seen: Seen, key: int) -> int:
-        distance, nearest = self._nearest_along(seen, key, frozenset())
-        if nearest is None or distance > 0.5 * self.spacing:
-            return key
+    def _lowered_on(self, seen: Seen, reading: Reading) -> int:
+        distance, nearest = self._nearest_along(seen, reading.line.key, frozenset())
+        if nearest is None or distance > COME * self.spacing or not self._clearly_nearer(distance, reading):
+            return reading.line.key
         self.held, self._better = False, None
         return nearest
+
+    def _clearly_nearer(self, distance: float, reading: Reading) -> bool:
+        return distance <= reading.foot.distance - CLEARLY_NEARER * self.spacing
 
     def _settled(self, seen: Seen, reading: Reading, done: Set[int]) -> int:
         key = reading.line.key
         distance, nearest = self._nearest_along(seen, key, done)
-        if nearest is None or distance > reading.foot.distance - CLEARLY_NEARER * self.spacing:
+        if nearest is None or not self._clearly_nearer(distance, reading):
             self._better = None
             return key
         if nearest != self._better:
             self._better, self._better_since = nearest, (seen.t, seen.east, seen.north)
             return key
         since, east, north = self._better_since
-        if seen.t - since < SETTLED_TIME or math.hypot(seen.east - east, seen.north - north) < SETTLED_DISTANCE:
+        seconds, metres = SETTLED_AGAINST_PLAN if self.itinerary.planned_direction else SETTLED
+        if seen.t - since < seconds or math.hypot(seen.east - east, seen.north - north) < metres:
             return key
         self._better = None
         return nearest
@@ -128,6 +137,18 @@ class Choice:
             if foot.distance < best[0] and off_axis(seen.heading, foot.direction) <= ALONG:
                 best = (foot.distance, other)
         return best
+
+
+def _is_done(line: GuideLine, progress: Progress) -> bool:
+    if line.key in progress.done:
+        return True
+    return line.work_length is None and progress.worked(line.key) >= ENDLESS_DONE
+
+
+def _turned_to(reading: Reading) -> int:
+    """+1 when the tractor has turned to the side where numbers grow, -1 to the other."""
+    turned = math.sin(reading.heading_error) * (-1.0 if reading.against else 1.0)
+    return 1 if turned >= 0 else -1
 
 
 def _has_left(reading: Reading) -> bool:

@@ -15,7 +15,7 @@ import numpy as np
 import shapely
 
 from guidance_app.angles import wrap_pi
-from guidance_app.guidance.family import PassFamily, drawn_line, offset_line
+from guidance_app.guidance.family import Learner, PassFamily, drawn_line, offset_line
 from guidance_app.guidance.polyline import Polyline
 from guidance_app.model import FloatArray, Pass, Plan, Segment, SegmentKind
 
@@ -78,6 +78,9 @@ class Itinerary(Protocol):
     def shifted(self, metres: float) -> "Itinerary":
         """The same with all lines moved by ``metres`` in all (not in addition), to the right of the reference."""
 
+    def learned(self, number: int, points: FloatArray) -> "Itinerary":
+        """After pass ``number`` was driven along ``points``; the same where passes do not follow those driven."""
+
     def sense(self, key: int) -> float:
         """+1 where the pass runs along the reference direction of shifts, -1 where it runs against it."""
 
@@ -91,6 +94,7 @@ class FamilyItinerary:
         self._unmoved = family
         self._family = family.shifted(metres) if metres else family
         self._field = field
+        self._metres = metres
         self._lines: dict[int, GuideLine | None] = {}
 
     @property
@@ -155,6 +159,12 @@ class FamilyItinerary:
     def shifted(self, metres: float) -> "FamilyItinerary":
         """The family moved sideways."""
         return FamilyItinerary(self._unmoved, self._field, metres)
+
+    def learned(self, number: int, points: FloatArray) -> "FamilyItinerary":
+        """A learning family's next state, moved as this one is."""
+        if not isinstance(self._family, Learner):
+            return self
+        return FamilyItinerary(self._family.driven(number, points).shifted(-self._metres), self._field, self._metres)
 
     def sense(self, key: int) -> float:  # noqa: ARG002 - of the protocol
         """All passes of a family run along its guidance line."""
@@ -251,6 +261,10 @@ class PlanItinerary:
     def shifted(self, metres: float) -> "PlanItinerary":
         """The same order on moved lines; right is meant as seen along the plan's direction, on laps along the lap."""
         return PlanItinerary(self._order, metres)
+
+    def learned(self, number: int, points: FloatArray) -> "PlanItinerary":  # noqa: ARG002 - of the protocol
+        """A plan stays as it is."""
+        return self
 
     def sense(self, key: int) -> float:
         """By the way from the pass's first to its last point."""

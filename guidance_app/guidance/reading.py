@@ -5,19 +5,24 @@ neither the sides nor the along-track distance round, and the heading error stay
 """
 
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from guidance_app.angles import wrap_pi
 from guidance_app.guidance.itinerary import GuideLine
 from guidance_app.guidance.polyline import Foot
 
-__all__ = ["ALIGNED", "Reading", "Seen", "drives_against", "off_axis", "read_off"]
+__all__ = ["ALIGNED", "Reader", "Reading", "Seen", "off_axis"]
 
 ALIGNED = math.radians(45)
 """A tractor turned less than this from a pass, either way round, is driving along it."""
 
-HYSTERESIS = math.radians(20)
-"""So far past square to the pass the heading has to turn before the direction of travel is the other one."""
+COME, STAY = 0.5, 0.8
+"""In swath spacings: so near beside a pass the tractor comes on it, and so near it stays on it."""
+
+
+CALM = 1.0
+"""Metres: nearer to its exit nobody comes on a pass, and so far before its entry nobody leaves it again."""
 
 
 class Seen(NamedTuple):
@@ -34,8 +39,8 @@ class Seen(NamedTuple):
 class Reading(NamedTuple):
     """Signed as in ``model.Guidance``; ``along`` is negative before the entry, ``to_end`` beyond the exit.
 
-    ``lateral`` is the cross-track seen in the order of the points, ``off_axis`` the angle to the pass, either way
-    round. ``on_pass`` is within half a spacing, between both ends, and aligned.
+    ``off_axis`` is the angle to the pass, either way round. ``on_pass`` is beside it by at most half a spacing (to come
+    there) or by 0.8 of it (to stay), aligned, and with the implement between both ends.
     """
 
     line: GuideLine
@@ -54,30 +59,31 @@ def off_axis(heading: float, direction: float) -> float:
     return abs((heading - direction + math.pi / 2) % math.pi - math.pi / 2)
 
 
-def drives_against(heading: float, direction: float, before: bool | None) -> bool:
-    """Whether a line is driven against its direction; near square to it, what was so before stays."""
-    turned = abs(wrap_pi(heading - direction))
-    if before is None:
-        return turned > math.pi / 2
-    return turned > (math.pi / 2 - HYSTERESIS if before else math.pi / 2 + HYSTERESIS)
+@dataclass(frozen=True, slots=True)
+class Reader:
+    """``behind`` is how far the implement works behind the guided point."""
 
+    spacing: float
+    behind: float = 0.0
 
-def read_off(line: GuideLine, foot: Foot, seen: Seen, spacing: float, *, against: bool) -> Reading:
-    """All signs turned into the direction of travel."""
-    direction = foot.direction + math.pi if against else foot.direction
-    rest = line.polyline.length - foot.along
-    along, to_end = (rest, foot.along) if against else (foot.along, rest)
-    axis = off_axis(seen.heading, foot.direction)
-    between_ends = line.target.endless or (along >= 0 and to_end >= 0)
-    near = abs(foot.cross) <= 0.5 * spacing and foot.distance <= 0.5 * spacing + 1e-9
-    return Reading(
-        line=line,
-        foot=foot,
-        against=against,
-        cross_track=-foot.cross if against else foot.cross,
-        heading_error=wrap_pi(seen.heading - direction),
-        along=along,
-        to_end=to_end,
-        off_axis=axis,
-        on_pass=near and between_ends and seen.heading_known and axis <= ALIGNED,
-    )
+    def read(self, line: GuideLine, foot: Foot, seen: Seen, *, against: bool, was_on: bool) -> Reading:
+        """All signs turned into the direction of travel."""
+        direction = foot.direction + math.pi if against else foot.direction
+        rest = line.polyline.length - foot.along
+        along, to_end = (rest, foot.along) if against else (foot.along, rest)
+        axis = off_axis(seen.heading, foot.direction)
+        after_entry = along - self.behind >= (-CALM if was_on else 0.0)
+        before_exit = to_end + self.behind >= (0.0 if was_on else CALM)
+        between = line.target.closed or line.target.endless or (after_entry and before_exit)
+        near = abs(foot.cross) <= (STAY if was_on else COME) * self.spacing
+        return Reading(
+            line=line,
+            foot=foot,
+            against=against,
+            cross_track=-foot.cross if against else foot.cross,
+            heading_error=wrap_pi(seen.heading - direction),
+            along=along,
+            to_end=to_end,
+            off_axis=axis,
+            on_pass=near and between and seen.heading_known and axis <= ALIGNED,
+        )

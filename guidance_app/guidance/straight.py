@@ -1,5 +1,6 @@
 """An AB line from the first straight stretch that is driven, for a log or a drive that comes without a line."""
 
+import copy
 import math
 from collections import deque
 from typing import NamedTuple
@@ -25,6 +26,10 @@ POINT_EVERY = 0.25
 """Metres between the points that are kept."""
 
 
+Corner = tuple[float, float]
+"""East, north."""
+
+
 class _Point(NamedTuple):
     east: float
     north: float
@@ -41,8 +46,15 @@ class StraightStretch:
         self._points: deque[_Point] = deque()
         self._continuity = Continuity()
 
-    def step(self, pose: Pose) -> tuple[FloatArray, FloatArray] | None:
-        """A and B, each of shape (2,), when this pose completes the stretch; else None.
+    def fork(self) -> "StraightStretch":
+        """An independent copy."""
+        other = copy.copy(self)
+        other._points = self._points.copy()  # noqa: SLF001 - its own class, as in the line below
+        other._continuity = copy.copy(self._continuity)  # noqa: SLF001
+        return other
+
+    def step(self, pose: Pose) -> tuple[Corner, Corner] | None:
+        """A and B, each (east, north), when this pose completes the stretch; else None.
 
         Both lie on the line of least squared distances to the stretch, A where it began.
         """
@@ -80,7 +92,7 @@ class StraightStretch:
         return max(headings) - min(headings) <= 2.0 * WITHIN
 
 
-def _fitted(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _fitted(points: FloatArray) -> tuple[Corner, Corner]:
     middle = points.mean(axis=0)
     away = points - middle
     across = 2.0 * float(away[:, 0] @ away[:, 1])
@@ -89,4 +101,5 @@ def _fitted(points: FloatArray) -> tuple[FloatArray, FloatArray]:
     if float((points[-1] - points[0]) @ toward) < 0:
         toward = -toward
     along = away @ toward
-    return middle + along[0] * toward, middle + along[-1] * toward
+    start, end = middle + along[0] * toward, middle + along[-1] * toward
+    return (float(start[0]), float(start[1])), (float(end[0]), float(end[1]))

@@ -6,18 +6,21 @@ the last one, other passes are looked up in a tree, and only while the implement
 
 import copy
 import math
+from collections.abc import Iterable
 
 import shapely
 
-from guidance_app.guidance.choice import Choice
+from guidance_app.guidance.choice import ENDLESS_DONE, Choice
 from guidance_app.guidance.continuity import Continuity
-from guidance_app.guidance.family import PassFamily
+from guidance_app.guidance.family import Learner, PassFamily
 from guidance_app.guidance.itinerary import FamilyItinerary, GuideLine, Itinerary, Path, PlanItinerary
+from guidance_app.guidance.learning import DrivenPass
 from guidance_app.guidance.offsets import LineOffsets
 from guidance_app.guidance.polyline import Foot, Polyline
 from guidance_app.guidance.progress import DONE_FRACTION, Progress
-from guidance_app.guidance.reading import ALIGNED, Reading, Seen, drives_against, read_off
-from guidance_app.model import FloatArray, Guidance, OffsetKind, OffsetRecord, Plan, Pose, TurnGuide
+from guidance_app.guidance.reading import ALIGNED, COME, STAY, Reader, Reading, Seen
+from guidance_app.guidance.travel import TravelDirection, drives_against
+from guidance_app.model import FloatArray, Guidance, OffsetKind, OffsetRecord, Pass, Plan, Pose, TurnGuide
 
 __all__ = ["Tracker", "cross_track"]
 
@@ -26,9 +29,6 @@ WINDOW = 10.0
 
 SLOWEST_FORECAST = 0.3
 """Below this speed (m/s) nobody says in how many seconds a turn comes."""
-
-ENDLESS_DONE = 20.0
-"""An endless pass has no length: it counts as done when it is left after so many metres of work."""
 
 
 def cross_track(
@@ -51,6 +51,7 @@ class Tracker:
 
     ``done`` holds the numbers of passes worked before (a job that goes on after a pause). With ``field`` the passes of
     an endless family have a length there, so that they can be done, and neighbours outside are not offered.
+    ``behind`` is how far the implement works behind the guided point: ``on_pass`` lasts until it has come to the end.
     """
 
     def __init__(
@@ -60,19 +61,20 @@ class Tracker:
         *,
         field: shapely.Polygon | None = None,
         done: frozenset[int] = frozenset(),
+        behind: float = 0.0,
     ) -> None:
         self._itinerary: Itinerary
         self._itinerary = PlanItinerary.of(family) if isinstance(family, Plan) else FamilyItinerary(family, field)
         self._spacing = spacing
+        self._reader = Reader(spacing, behind)
+        self._travel = TravelDirection()
+        self._driven = DrivenPass() if isinstance(family, Learner) else None
         self._progress = Progress(frozenset(key for number in done for key in self._itinerary.keys(number)))
         self._choice = Choice(self._itinerary, spacing)
         self._continuity = Continuity()
         self._offsets = LineOffsets()
         self._line: GuideLine | None = None
-        self._reached = False
-        self._against: bool | None = None
-        self._pinned: bool | None = None
-        self._forced = False
+        self._on = self._reached = False
         self._foot: Foot | None = None
         self._work_from: float | None = None
         self._side = 0
@@ -85,6 +87,8 @@ class Tracker:
         other._progress = self._progress.fork()  # noqa: SLF001 - its own class, as in the lines below
         other._choice = self._choice.fork()  # noqa: SLF001
         other._continuity = copy.copy(self._continuity)  # noqa: SLF001
+        other._travel = copy.copy(self._travel)  # noqa: SLF001
+        other._driven = None if self._driven is None else self._driven.fork()  # noqa: SLF001
         return other
 
     @property
@@ -102,6 +106,12 @@ class Tracker:
             self._done = (keys, whole)
         return self._done[1]
 
+    def moved(self, shown: Iterable[Pass]) -> tuple[Pass, ...]:
+        """The same passes where the offsets in force put them; one that vanishes there is left out."""
+        keys = (one.number if one.order is None else one.order for one in shown)
+        lines = (self._itinerary.line(key) for key in keys)
+        return tuple(line.target for line in lines if line is not None)
+
     # --- one epoch --------------------------------------------------------------------------------------------------
 
     def step(self, pose: Pose, point: tuple[float, float], working: bool) -> Guidance | None:
@@ -111,6 +121,7 @@ class Tracker:
             return None
         moved = math.hypot(seen.east - self._continuity.east, seen.north - self._continuity.north)
         continuous = self._continuity.step(seen.t, seen.east, seen.north)
+        self._learn(seen)
         line = self._line or self._begin(seen)
         if line is None:
             return None
@@ -119,6 +130,7 @@ class Tracker:
         key = self._choice.step(seen, reading, self._progress, self._side)
         if key != line.key:
             reading = self._read(self._go_to(key), seen, moved)
+        self._on = reading.on_pass
         self._reached = self._reached or reading.on_pass
         return self._guidance(pose, seen, reading)
 
@@ -130,13 +142,13 @@ class Tracker:
         if self._line is None or self._foot is None:
             return None
         foot = self._line.polyline.foot(east, north, self._foot.along, 4.0 * WINDOW)
-        return _errors(foot, heading, against=bool(self._against))
+        return _errors(foot, heading, against=bool(self._travel.against))
 
     def _read(self, line: GuideLine, seen: Seen, moved: float) -> Reading:
         foot = self._find_foot(line, seen, moved)
         self._foot = foot
-        self._against = self._direction_of_travel(seen, foot)
-        return read_off(line, foot, seen, self._spacing, against=self._against)
+        against = self._travel.step(seen, foot, COME * self._spacing)
+        return self._reader.read(line, foot, seen, against=against, was_on=self._on)
 
     def _find_foot(self, line: GuideLine, seen: Seen, moved: float) -> Foot:
         if self._foot is None:
@@ -150,21 +162,9 @@ class Tracker:
             return foot
         return line.polyline.foot(seen.east, seen.north)
 
-    def _direction_of_travel(self, seen: Seen, foot: Foot) -> bool:
-        before = None if self._pinned is not None else self._against
-        by_heading = drives_against(seen.heading, foot.direction, before)
-        if self._pinned is None:
-            return by_heading
-        swung = abs((seen.heading - foot.direction + math.pi / 2) % math.pi - math.pi / 2)
-        there = seen.heading_known and foot.distance <= 0.5 * self._spacing and swung <= ALIGNED
-        if there and (not self._forced or by_heading == self._pinned):
-            self._pinned, self._forced = None, False
-            return by_heading
-        return self._pinned
-
     def _count_work(self, seen: Seen, reading: Reading, *, continuous: bool) -> None:
         line, along = reading.line, reading.foot.along
-        beside = abs(reading.foot.cross) <= 0.5 * self._spacing and reading.off_axis <= ALIGNED
+        beside = abs(reading.foot.cross) <= (STAY if self._on else COME) * self._spacing and reading.off_axis <= ALIGNED
         if self._work_from is not None and continuous and beside:
             for start, end in _stretches(self._work_from, along, line):
                 self._progress.add(line.key, start, end)
@@ -190,10 +190,20 @@ class Tracker:
                 self._progress.finish(old.key)
             self._side = (key > old.key) - (key < old.key)
         self._line = line
-        self._reached = False
-        self._foot = self._work_from = self._against = None
-        self._pinned, self._forced = (False if self._itinerary.planned_direction else None), False
+        self._on = self._reached = False
+        self._foot = self._work_from = None
+        self._travel.begin(planned=self._itinerary.planned_direction)
         return line
+
+    def _learn(self, seen: Seen) -> None:
+        """Where passes follow those driven: takes up the pass that has just ended."""
+        if self._driven is None:
+            return
+        points = self._driven.step(seen, None if self._line is None else self._line.key)
+        if points is not None:
+            number = self._driven.key or 0
+            self._replace_itinerary(self._itinerary.learned(number, points))
+            self._progress.finish(number)
 
     def take(self, number: int) -> bool:
         """Guides along this pass until the tractor has been on it; False when there is none of this number."""
@@ -223,8 +233,7 @@ class Tracker:
         """The target is to be driven the other way round; False while there is no target."""
         if self._line is None:
             return False
-        self._pinned, self._forced = not self._against, True
-        self._against = self._pinned
+        self._travel.turn_round()
         return True
 
     # --- offsets ----------------------------------------------------------------------------------------------------
@@ -249,15 +258,21 @@ class Tracker:
         if self._line is None:
             return 1.0
         sense = self._itinerary.sense(self._line.key)
-        return -sense if self._against else sense
+        return -sense if self._travel.against else sense
 
     def _move(self, offsets: LineOffsets) -> bool:
-        moved = self._itinerary.shifted(offsets.total)
-        line = None if self._line is None else moved.line(self._line.key)
+        if not self._replace_itinerary(self._itinerary.shifted(offsets.total)):
+            return False
+        self._offsets = offsets
+        return True
+
+    def _replace_itinerary(self, itinerary: Itinerary) -> bool:
+        """False, and nothing changed, when the target has no place in it."""
+        line = None if self._line is None else itinerary.line(self._line.key)
         if self._line is not None and line is None:
             return False
-        self._offsets, self._itinerary, self._line = offsets, moved, line
-        self._choice.itinerary = moved
+        self._itinerary, self._line = itinerary, line
+        self._choice.itinerary = itinerary
         self._next = None
         return True
 
