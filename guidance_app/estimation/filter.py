@@ -31,6 +31,7 @@ __all__ = [
     "QuantisationSettings",
     "SmootherSettings",
     "Start",
+    "Variances",
 ]
 
 

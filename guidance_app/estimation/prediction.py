@@ -13,6 +13,7 @@ import numpy as np
 
 from guidance_app.angles import wrap_2pi
 from guidance_app.estimation.filter import FilterSettings
+from guidance_app.estimation.prediction_kernels import fading_arc
 from guidance_app.model import FloatArray, Pose, Prediction
 
 __all__ = ["LOOK_AHEAD_MAX", "LOOK_AHEAD_MIN", "Predictor", "Way", "pose_after"]
@@ -34,28 +35,20 @@ def pose_after(pose: Pose, seconds: float) -> Pose:
     Going back in time the curvature is kept. A standing tractor stays where it is; an unknown heading is not
     followed.
     """
-    return _along(pose, seconds)[-1]
+    return _along(pose, seconds)[0]
 
 
-def _along(pose: Pose, seconds: float) -> list[Pose]:
-    """Poses from now to then, every tenth of a second."""
+def _along(pose: Pose, seconds: float) -> tuple[Pose, FloatArray]:
+    """The pose then, and the places from now to then, every tenth of a second; shape (K, 2)."""
     if seconds == 0.0 or pose.standing or not pose.heading_known:
-        return [_at(pose, seconds, pose.east, pose.north, pose.heading, pose.curvature)]
+        here = np.array([(pose.east, pose.north)])
+        return _at(pose, seconds, pose.east, pose.north, pose.heading, pose.curvature), here
     steps = max(1, math.ceil(abs(seconds) / ARC_STEP))
-    poses = []
-    east, north, last_turn = pose.east, pose.north, 0.0
-    for k in range(1, steps + 1):
-        after = seconds * k / steps
-        fade = math.exp(-max(after, 0.0) / FADING)
-        driven = FADING * (1.0 - fade) if after > 0 else after
-        turn = pose.speed * pose.curvature * driven
-        middle = pose.heading + 0.5 * (turn + last_turn)
-        stretch = pose.speed * seconds / steps
-        east += stretch * math.sin(middle)
-        north += stretch * math.cos(middle)
-        poses.append(_at(pose, after, east, north, pose.heading + turn, pose.curvature * fade))
-        last_turn = turn
-    return poses
+    places = np.empty((steps + 1, 2))
+    places[0] = pose.east, pose.north
+    turn, fade = fading_arc(places, pose.heading, pose.speed, pose.curvature, seconds, FADING)
+    east, north = places[-1]
+    return _at(pose, seconds, float(east), float(north), pose.heading + turn, pose.curvature * fade), places
 
 
 def _at(pose: Pose, after: float, east: float, north: float, heading: float, curvature: float) -> Pose:
@@ -114,12 +107,11 @@ class Predictor:
         if abs(pose.speed) < SLOWEST or not pose.heading_known:
             return None
         if self._way is Way.TRACK and len(self._swept.poses) >= 3:
-            poses = _carried_on(self._swept.poses, seconds)
+            later, places = _carried_on(self._swept.poses, seconds)
         else:
-            poses = _along(pose, seconds)
-        arc = np.array([(pose.east, pose.north), *((p.east, p.north) for p in poses)])
-        arc.setflags(write=False)
-        return Prediction(look_ahead_s=seconds, pose=poses[-1], arc=arc)
+            later, places = _along(pose, seconds)
+        places.setflags(write=False)
+        return Prediction(look_ahead_s=seconds, pose=later, arc=places)
 
     def fork(self) -> "Predictor":
         """An independent copy."""
@@ -128,8 +120,8 @@ class Predictor:
         return other
 
 
-def _carried_on(swept: tuple[Pose, ...], seconds: float) -> list[Pose]:
-    """The swept track's own curve, carried on from the newest pose."""
+def _carried_on(swept: tuple[Pose, ...], seconds: float) -> tuple[Pose, FloatArray]:
+    """The pose at the end of the swept track's own curve, carried on from the newest pose, and the places there."""
     newest = swept[-1]
     t = np.array([p.t - newest.t for p in swept])
     track = np.array([(p.east - newest.east, p.north - newest.north) for p in swept])
@@ -141,20 +133,18 @@ def _carried_on(swept: tuple[Pose, ...], seconds: float) -> list[Pose]:
     slopes = (powers[:, :-1] * np.arange(1, degree + 1)) @ curve[1:]
     backwards = math.pi if newest.speed < 0 else 0.0
     headings = np.unwrap(np.arctan2(slopes[:, 0], slopes[:, 1]))
-    poses = []
-    for k in range(1, len(times)):
-        stretch = float(np.hypot(*slopes[k])) or abs(newest.speed)
-        turn_rate = float(headings[k] - headings[k - 1]) / (seconds / (len(times) - 1))
-        at = _at(
-            newest,
-            float(times[k]),
-            newest.east + float(places[k, 0]),
-            newest.north + float(places[k, 1]),
-            float(headings[k]) + backwards,
-            turn_rate / math.copysign(max(stretch, SLOWEST), newest.speed),
-        )
-        poses.append(at)
-    return poses
+    stretch = float(np.hypot(*slopes[-1])) or abs(newest.speed)
+    turn_rate = float(headings[-1] - headings[-2]) / (seconds / (len(times) - 1))
+    ahead = places + np.array([newest.east, newest.north])
+    later = _at(
+        newest,
+        seconds,
+        float(ahead[-1, 0]),
+        float(ahead[-1, 1]),
+        float(headings[-1]) + backwards,
+        turn_rate / math.copysign(max(stretch, SLOWEST), newest.speed),
+    )
+    return later, ahead
 
 
 def _fitted(t: FloatArray, track: FloatArray, degree: int) -> FloatArray:

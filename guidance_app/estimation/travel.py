@@ -3,6 +3,7 @@
 Used by the filters that have no model of their own for the heading. A baseline that turns by more than 110 degrees
 between two looks is a tractor that backs up, not one that turns: at the tightest radius of 0.5 m a metre turns it by
 115 degrees only if it never straightens. Backing for more than 30 m is not believed; the tractor then goes forward.
+Places are medians of three fixes, so that one outlier is neither a baseline nor a reversal.
 """
 
 import math
@@ -22,18 +23,26 @@ LONGEST_BACKING = 30.0
 
 @dataclass(frozen=True, slots=True)
 class Travel:
-    """The last metre driven, the heading it gives, and whether the tractor backs up. ``heading`` is the body's."""
+    """The last metre driven, the heading it gives, and whether the tractor backs up. ``heading`` is the body's.
+
+    ``fixes`` are the last two, ``points`` the medians kept.
+    """
 
     points: tuple[tuple[float, float], ...] = ()
     heading: float | None = None
     reverse: bool = False
     backed: float = 0.0
+    fixes: tuple[tuple[float, float], ...] = ()
 
     def to(self, east: float, north: float, compass: float | None = None) -> "Travel":
         """After one more fix. ``compass`` is a measured heading of the body; it decides which way is forward."""
-        here = (east, north)
+        three = (*self.fixes, (east, north))
+        fixes = three[-2:]
+        if len(three) < 3:
+            return replace(self, fixes=fixes, heading=self.heading if compass is None else compass)
+        here = (sorted(e for e, _ in three)[1], sorted(n for _, n in three)[1])
         if self.points and math.dist(self.points[-1], here) < SPACING:
-            return self if compass is None else replace(self, heading=compass)
+            return replace(self, fixes=fixes, heading=self.heading if compass is None else compass)
         step = math.dist(self.points[-1], here) if self.points else 0.0
         backed = self.backed + step if self.reverse else 0.0
         far = next(
@@ -42,20 +51,20 @@ class Travel:
         kept = (*self.points, here) if far is None else (*self.points[far:], here)
         if far is None:
             heading = compass if compass is not None else self.heading
-            return Travel(kept[-64:], heading, self.reverse, backed)
+            return Travel(kept[-64:], heading, self.reverse, backed, fixes)
         course = heading_between(self.points[far], here)
-        return self._with_course(kept, course, compass, backed)
+        heading, reverse, backed = self._turned(course, compass, backed)
+        return Travel(kept, heading, reverse, backed, fixes)
 
-    def _with_course(
-        self, kept: tuple[tuple[float, float], ...], course: float, compass: float | None, backed: float
-    ) -> "Travel":
+    def _turned(self, course: float, compass: float | None, backed: float) -> tuple[float, bool, float]:
+        """Heading, reverse and metres backed with a new baseline's direction."""
         if compass is not None:
-            return Travel(kept, compass, abs(wrap_pi(course - compass)) > math.pi / 2, 0.0)
+            return compass, abs(wrap_pi(course - compass)) > math.pi / 2, 0.0
         if backed > LONGEST_BACKING:
-            return Travel(kept, course, reverse=False)
+            return course, False, 0.0
         reverse = self.reverse
         body = wrap_2pi(course + math.pi) if reverse else course
         if self.heading is not None and abs(wrap_pi(body - self.heading)) > REVERSAL:
             reverse = not reverse
             body = wrap_2pi(body + math.pi)
-        return Travel(kept, body, reverse, backed if reverse else 0.0)
+        return body, reverse, backed if reverse else 0.0

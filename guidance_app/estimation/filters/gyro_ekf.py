@@ -7,15 +7,17 @@ D = (v + eps_v) dt - a dt^2 / 2 the model is
     east += D sin t,    north += D cos t                                            (2)-(8), corrected
     antenna = (east + L sin t - B cos t,  north + L cos t + B sin t)                (9)-(11), corrected
 
-and P, K and the update are the paper's (12)-(14), linearised at t. Corrected against the print: the sign of a dt^2 / 2
-(v is the speed at the end of the interval; the printed sign errs by 5 cm/s at 0.5 m/s2), d with its B terms, the second
-printed form of H, R in (14). The acceleration's own error is left out: its column is dt / 2 times that of eps_v, so no
-measurement tells the two apart (rank 4 of 5). ``as_printed`` in the settings puts all of that back, linearised at
-eps = 0, and with it the paper's remedy for its divergence: raw data in turns faster than 15 degrees a second.
+and P, K and the update are the paper's (12)-(14), linearised at t. Corrected against the print: the sign of a dt^2 /
+2 (v is the speed at the end of the interval; the printed sign errs by 5 cm/s at 0.5 m/s2), d with its B terms, the
+second printed form of H, R in (14). The acceleration's own error is left out: its column is dt / 2 times that of
+eps_v, so no measurement tells the two apart (rank 4 of 5). ``as_printed`` in the settings puts all of that back,
+linearised at eps = 0, and with it the paper's remedy for its divergence: raw data in turns faster than 15 degrees a
+second.
 
-Inputs: the receiver's speed, else that of the last two fixes; the attitude sensor's heading, else the gyro's rate
-carried on from the first course, else the course itself. A fix beyond the gate is dead-reckoned over, five at most.
-Standing, nothing moves. Time: a gap of more than 5 s takes the next fix as it is and keeps the heading's correction.
+Inputs: the receiver's speed; the attitude sensor's heading, else the gyro's rate carried on from the first course.
+What is missing is held at its first value, and its error walks faster: without both it is a filter of constant
+velocity. A fix beyond the gate is dead-reckoned over, five at most. Standing, nothing moves. Time: a gap of more than
+5 s takes the next fix as it is and keeps the heading's correction.
 """
 
 import math
@@ -27,6 +29,7 @@ from guidance_app.angles import wrap_2pi, wrap_pi
 from guidance_app.estimation.filter import Filter, FilterSettings, GyroSettings, Start
 from guidance_app.estimation.receiver_noise import DEFAULT_CELL, fix_covariance, noise_of
 from guidance_app.estimation.reference_point import offset_point
+from guidance_app.estimation.stillness import Stillness
 from guidance_app.estimation.travel import Travel
 from guidance_app.model import FloatArray, Measurement, Pose
 
@@ -41,6 +44,10 @@ FAST_TURN = math.radians(15)
 FIRST_SPEED_VARIANCE = 0.1**2
 FIRST_HEADING_VARIANCE = math.radians(6) ** 2
 FIRST_ACCELERATION_VARIANCE = 0.1**2
+MISSING_SPEED_VARIANCE = 2.0**2
+MISSING_SPEED_WALK = 0.2**2
+MISSING_HEADING_WALK = 0.06**2
+STANDING_VARIANCE = 0.01**2
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,10 +107,11 @@ def observation_jacobian(x: FloatArray, heading: float, forward: float, left: fl
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _State:
-    """``heading`` is the input's, not the estimate's; ``x`` and ``p`` are replaced, never written to."""
+    """``speed`` and ``heading`` are the inputs, not the estimates; ``x`` and ``p`` are replaced, never written to."""
 
     z: Measurement
     travel: Travel
+    still: Stillness
     speed: float
     heading: float | None
     x: FloatArray | None
@@ -126,9 +134,14 @@ class GyroFilter:
         if before is not None and z.t <= before.z.t:
             return before.pose
         travel = (before.travel if before else Travel()).to(z.east, z.north, z.heading)
-        heading = _input_heading(before, z, travel)
-        speed = _input_speed(before, z, travel)
-        self._state = self._next(before, z, travel, heading, speed)
+        still = before.still.after(z, noise_of(z).white) if before else Stillness.of(z)
+        standing = still.speed_bound(z, noise_of(z).white) is not None
+        heading = _input_heading(before, z, travel, standing=standing)
+        if heading is None:
+            pose = _unknown(z)
+            self._state = _State(z, travel, still, pose.speed, None, None, None, 0, pose)
+        else:
+            self._state = self._next(before, z, (travel, still), heading, standing=standing)
         return self._state.pose
 
     def begin(self, start: Start) -> None:
@@ -142,31 +155,29 @@ class GyroFilter:
         return other
 
     def _next(
-        self, before: _State | None, z: Measurement, travel: Travel, heading: float | None, speed: float
+        self, before: _State | None, z: Measurement, way: tuple[Travel, Stillness], heading: float, *, standing: bool
     ) -> _State:
+        travel, still = way
         settings = self._settings.gyro_ekf
-        if heading is None:
-            pose = Pose(
-                z.t, z.arrival, z.east, z.north, 0.0, speed, covariance=fix_covariance(z), heading_known=False,
-                standing=abs(speed) < STANDING, roll=z.roll, pitch=z.pitch,
-            )  # fmt: skip
-            return _State(z, travel, speed, None, None, None, 0, pose)
         R = self._fix_noise(z)
-        if before is None or before.x is None or before.p is None or before.heading is None:
+        speed = _input_speed(before, z, travel, standing=standing)
+        if before is None or before.x is None or before.p is None or _wrong_way(before, z, travel):
             x, p, rejected = *_first(z, heading, R, settings), 0
         elif z.t - before.z.t > LONGEST_GAP:
             x, p, rejected = *_taken_up(before.x, before.p, z, heading, R), 0
         else:
             dt = z.t - before.z.t
             u = Inputs(speed, (speed - before.speed) / dt, heading, dt)
-            x, p = _predicted(before.x, before.p, u, settings)
+            x, p = _predicted(before.x, before.p, u, _walks(z, settings, standing=standing))
             x, p, rejected = _corrected(x, p, z, heading, R, (settings, before.rejected))
+        if standing:
+            x, p = _stopped(x, p, speed)
         rate = _yaw_rate(before, z, heading)
         pose = _pose(z, x, p, heading, speed, rate)
-        pose = replace(pose, reverse=speed < -STANDING, dead_reckoned=rejected > 0)
+        pose = replace(pose, standing=standing, dead_reckoned=rejected > 0)
         if settings.as_printed and abs(rate) > FAST_TURN:
             pose = _raw(pose, z)
-        return _State(z, travel, speed, heading, x, p, rejected, pose)
+        return _State(z, travel, still, speed, heading, x, p, rejected, pose)
 
     def _fix_noise(self, z: Measurement) -> FloatArray:
         """R: what was measured at the start point, else by the quality of the fix."""
@@ -180,28 +191,66 @@ class GyroFilter:
         return np.diag([cell[0] ** 2 / 12 + noise.white**2, cell[1] ** 2 / 12 + noise.white**2])
 
 
-def _input_heading(before: _State | None, z: Measurement, travel: Travel) -> float | None:
-    """The attitude sensor's heading, else the gyro carried on, else the way driven."""
+def _wrong_way(before: _State, z: Measurement, travel: Travel) -> bool:
+    """Whether a first heading from a start in reverse has now shown itself as such."""
+    if z.heading is not None or travel.heading is None or before.travel.reverse <= travel.reverse:
+        return False
+    return abs(wrap_pi(travel.heading - before.pose.heading)) > math.pi / 2
+
+
+def _unknown(z: Measurement) -> Pose:
+    """A position without a heading."""
+    return Pose(
+        z.t,
+        z.arrival,
+        z.east,
+        z.north,
+        heading=0.0,
+        speed=z.speed or 0.0,
+        covariance=fix_covariance(z),
+        heading_known=False,
+        roll=z.roll,
+        pitch=z.pitch,
+    )
+
+
+def _input_heading(before: _State | None, z: Measurement, travel: Travel, *, standing: bool) -> float | None:
+    """The attitude sensor's heading, else the gyro carried on; without both the first course, held."""
     if z.heading is not None:
         return z.heading
-    if z.yaw_rate is not None and before is not None and before.heading is not None:
-        mean_rate = z.yaw_rate if before.z.yaw_rate is None else 0.5 * (z.yaw_rate + before.z.yaw_rate)
-        if z.t - before.z.t <= LONGEST_GAP:
-            return before.heading + mean_rate * (z.t - before.z.t)
-    return travel.heading
+    if before is None or before.heading is None or _wrong_way(before, z, travel):
+        return travel.heading
+    if z.yaw_rate is None or standing or z.t - before.z.t > LONGEST_GAP:
+        return before.heading
+    mean_rate = z.yaw_rate if before.z.yaw_rate is None else 0.5 * (z.yaw_rate + before.z.yaw_rate)
+    return before.heading + mean_rate * (z.t - before.z.t)
 
 
-def _input_speed(before: _State | None, z: Measurement, travel: Travel) -> float:
-    """The speed, negative in reverse; zero below what receivers show at rest."""
-    if z.speed is not None:
-        speed = z.speed
-    elif before is not None:
-        speed = math.hypot(z.east - before.z.east, z.north - before.z.north) / (z.t - before.z.t)
-    else:
-        speed = 0.0
-    if speed < STANDING:
+def _input_speed(before: _State | None, z: Measurement, travel: Travel, *, standing: bool) -> float:
+    """The receiver's speed, negative when its course runs against the body; without one zero, all of it an error."""
+    if z.speed is None or standing:
         return 0.0
-    return -speed if travel.reverse else speed
+    backwards = travel.reverse
+    if z.course is not None and before is not None and before.pose.heading_known:
+        backwards = math.cos(z.course - before.pose.heading) < 0.0
+    return -z.speed if backwards else z.speed
+
+
+def _walks(z: Measurement, settings: GyroSettings, *, standing: bool) -> FloatArray:
+    """Variances per second of the state's random walks."""
+    speed = settings.speed_walk if z.speed is not None else MISSING_SPEED_WALK
+    heading = settings.heading_walk if z.heading is not None or z.yaw_rate is not None else MISSING_HEADING_WALK
+    walks = [settings.position_walk, settings.position_walk, speed, 0.0 if standing else heading]
+    return np.array([*walks, settings.speed_walk] if settings.as_printed else walks)
+
+
+def _stopped(x: FloatArray, p: FloatArray, speed: float) -> tuple[FloatArray, FloatArray]:
+    """The speed is known to be zero."""
+    H = np.zeros(x.size)
+    H[SPEED_ERROR] = 1.0
+    S = float(p[SPEED_ERROR, SPEED_ERROR]) + STANDING_VARIANCE
+    K = p[:, SPEED_ERROR] / S
+    return x - K * (speed + x[SPEED_ERROR]), p - np.outer(K, K) * S
 
 
 def _yaw_rate(before: _State | None, z: Measurement, heading: float) -> float:
@@ -218,7 +267,7 @@ def _first(z: Measurement, heading: float, R: FloatArray, settings: GyroSettings
     x[:2] = offset_point(z.east, z.north, heading, -z.antenna[0], -z.antenna[1])
     p = np.zeros((size, size))
     p[:2, :2] = R
-    p[SPEED_ERROR, SPEED_ERROR] = FIRST_SPEED_VARIANCE
+    p[SPEED_ERROR, SPEED_ERROR] = FIRST_SPEED_VARIANCE if z.speed is not None else MISSING_SPEED_VARIANCE
     p[HEADING_ERROR, HEADING_ERROR] = (z.heading_sigma or 0.0) ** 2 + FIRST_HEADING_VARIANCE
     if settings.as_printed:
         p[ACCELERATION_ERROR, ACCELERATION_ERROR] = FIRST_ACCELERATION_VARIANCE
@@ -238,10 +287,9 @@ def _taken_up(
     return x, p
 
 
-def _predicted(x: FloatArray, p: FloatArray, u: Inputs, settings: GyroSettings) -> tuple[FloatArray, FloatArray]:
-    """Eq. 6 and the second half of eq. 14. As printed, linear about eps = 0."""
-    printed = settings.as_printed
-    if printed:
+def _predicted(x: FloatArray, p: FloatArray, u: Inputs, walks: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Eq. 6 and the second half of eq. 14. As printed (five states), linear about eps = 0."""
+    if x.size > ACCELERATION_ERROR:
         origin = np.zeros(x.size)
         origin[:2] = x[:2]
         F = transition_jacobian(origin, u, as_printed=True)
@@ -249,9 +297,6 @@ def _predicted(x: FloatArray, p: FloatArray, u: Inputs, settings: GyroSettings) 
     else:
         F = transition_jacobian(x, u)
         after = moved(x, u)
-    walks = [settings.position_walk, settings.position_walk, settings.speed_walk, settings.heading_walk]
-    if printed:
-        walks.append(settings.speed_walk)
     return after, F @ p @ F.T + np.diag(walks) * u.dt
 
 
@@ -280,7 +325,7 @@ def _corrected(
         if rejected < DEAD_RECKONED:
             return x, p, rejected + 1
         p = p.copy()
-        p[:2, :2] += np.outer(innovation, innovation)
+        p[:2, :2] += np.eye(2) * float(innovation @ innovation)
         S = H @ p @ H.T + R
     K = np.linalg.solve(S, H @ p).T
     x = x + K @ innovation
@@ -289,7 +334,7 @@ def _corrected(
 
 
 def _pose(z: Measurement, x: FloatArray, p: FloatArray, heading: float, speed: float, rate: float) -> Pose:
-    forward = 0.0 if speed == 0.0 else speed + float(x[SPEED_ERROR])
+    forward = speed + float(x[SPEED_ERROR])
     drift = noise_of(z).drift ** 2
     return Pose(
         t=z.t,
@@ -301,7 +346,7 @@ def _pose(z: Measurement, x: FloatArray, p: FloatArray, heading: float, speed: f
         curvature=rate / forward if abs(forward) > 0.3 else 0.0,
         covariance=(float(p[0, 0]) + drift, float(p[0, 1]), float(p[1, 1]) + drift),
         heading_sigma=math.sqrt(float(p[HEADING_ERROR, HEADING_ERROR])),
-        standing=speed == 0.0,
+        reverse=forward < -STANDING,
         roll=z.roll,
         pitch=z.pitch,
     )

@@ -20,41 +20,29 @@ the innovations really are, because eq. 14 carries no unit.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from guidance_app.angles import wrap_2pi, wrap_pi
-from guidance_app.estimation.filter import Filter, FilterSettings, QuantisationSettings, Start
+from guidance_app.estimation.filter import Filter, FilterSettings, QuantisationSettings, Start, Variances
 from guidance_app.estimation.receiver_noise import fix_covariance
 from guidance_app.estimation.reference_point import offset_point
 from guidance_app.estimation.travel import Travel
 from guidance_app.model import Measurement, Pose
 
-__all__ = ["QuantisationFilter"]
+__all__ = ["FourStates", "QuantisationFilter", "correct", "predict"]
 
 LONGEST_GAP = 5.0
 STANDING = 0.1
+CREEPING = 0.15
 STEPS = 2
 """Heading and speed are read over this many steps where the receiver gives none."""
 INNOVATION_MEMORY = 0.1
 """Weight of the newest innovation in the running scale of the covariance."""
 
 
-@dataclass(frozen=True, slots=True)
-class _State:
-    """Mean and covariance. ``pxu`` is the covariance of east and speed, and so on; ``pt`` the heading's variance."""
-
-    x: float
-    y: float
-    theta: float
-    u: float
-    pxx: float
-    pxy: float
-    pxu: float
-    pyy: float
-    pyu: float
-    puu: float
-    pt: float
-    scale: float = 1.0
+FourStates = tuple[float, float, float, float, float, float, float, float, float, float, float]
+"""East, north, heading, speed; then the covariances east-east, east-north, east-speed, north-north, north-speed,
+speed-speed, and the heading's variance. A plain tuple, because one is made for each fix."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +52,8 @@ class _Memory:
     fixes: tuple[tuple[float, float, float], ...]
     travel: Travel
     course: float | None
-    state: _State | None
+    state: FourStates | None
+    scale: float
     pose: Pose
 
 
@@ -85,10 +74,10 @@ class QuantisationFilter:
         fixes = memory.fixes if memory else ()
         travel = (memory.travel if memory else Travel()).to(z.east, z.north, z.heading)
         measured = _course_and_speed(z, fixes, travel, memory.course if memory else None)
-        state = _next_state(memory, z, measured, self._settings.quantisation_kf)
-        pose = _pose(z, state, travel)
+        state, scale = _next_state(memory, z, measured, self._settings.quantisation_kf)
         course = measured[0] if measured else None
-        self._memory = _Memory((*fixes, (z.t, z.east, z.north))[-STEPS:], travel, course, state, pose)
+        pose = _pose(z, state, scale, travel)
+        self._memory = _Memory((*fixes, (z.t, z.east, z.north))[-STEPS:], travel, course, state, scale, pose)
         return pose
 
     def begin(self, start: Start) -> None:
@@ -104,17 +93,22 @@ class QuantisationFilter:
 def _course_and_speed(
     z: Measurement, fixes: tuple[tuple[float, float, float], ...], travel: Travel, course: float | None
 ) -> tuple[float, float] | None:
-    """The two derived measurements: heading of the body, and speed, negative in reverse. None before there are any."""
-    if z.speed is not None and (z.course is not None or course is not None):
+    """The two derived measurements: heading of the body, and speed, negative in reverse. None before there are any.
+
+    Slower than ``CREEPING`` a course is noise; the last one stays.
+    """
+    if z.speed is not None:
         speed = z.speed
         measured = course if z.course is None else _body(z.course, travel)
     elif len(fixes) == STEPS:
         t, east, north = fixes[0]
         de, dn = z.east - east, z.north - north
         speed = math.hypot(de, dn) / (z.t - t)
-        measured = course if de == 0.0 == dn else _body(math.atan2(de, dn), travel)
+        measured = _body(math.atan2(de, dn), travel)
     else:
         return None
+    if speed < CREEPING:
+        measured = course
     if z.heading is not None:
         measured = z.heading
     if measured is None:
@@ -129,44 +123,45 @@ def _body(course: float, travel: Travel) -> float:
 
 def _next_state(
     memory: _Memory | None, z: Measurement, measured: tuple[float, float] | None, settings: QuantisationSettings
-) -> _State | None:
+) -> tuple[FourStates | None, float]:
+    """The new state, and the running ratio of the innovations to what the covariance foresaw."""
     before = memory.state if memory else None
     if measured is None:
-        return before
+        return before, 1.0
     theta, u = measured
     if memory is None or before is None:
         p0 = settings.start_covariance
-        return _State(z.east, z.north, theta, u, p0[0], 0.0, 0.0, p0[1], 0.0, p0[3], p0[2])
-    predicted = _predicted(before, z.t - memory.pose.t, settings)
-    return _updated(predicted, (z.east, z.north, theta, u), settings)
+        return (z.east, z.north, theta, u, p0[0], 0.0, 0.0, p0[1], 0.0, p0[3], p0[2]), 1.0
+    predicted = predict(before, z.t - memory.pose.t, settings.process_noise)
+    r = settings.measurement_noise
+    ratio = (z.east - predicted[0]) ** 2 / (predicted[4] + r[0]) + (z.north - predicted[1]) ** 2 / (predicted[7] + r[1])
+    scale = memory.scale + INNOVATION_MEMORY * (0.5 * ratio - memory.scale)
+    return correct(predicted, (z.east, z.north, theta, u), r), scale
 
 
-def _predicted(s: _State, dt: float, settings: QuantisationSettings) -> _State:
+def predict(s: FourStates, dt: float, q: Variances) -> FourStates:
     """Eqs 4 to 9: straight on. P = F P F' + Q with a = dt sin(heading), b = dt cos(heading) in F."""
-    a = dt * math.sin(s.theta)
-    b = dt * math.cos(s.theta)
-    q = settings.process_noise
-    return replace(
-        s,
-        x=s.x + a * s.u,
-        y=s.y + b * s.u,
-        pxx=s.pxx + a * (2.0 * s.pxu + a * s.puu) + q[0],
-        pxy=s.pxy + b * s.pxu + a * s.pyu + a * b * s.puu,
-        pxu=s.pxu + a * s.puu,
-        pyy=s.pyy + b * (2.0 * s.pyu + b * s.puu) + q[1],
-        pyu=s.pyu + b * s.puu,
-        puu=s.puu + q[3],
-        pt=s.pt + q[2],
+    x, y, theta, u, pxx, pxy, pxu, pyy, pyu, puu, pt = s
+    a = dt * math.sin(theta)
+    b = dt * math.cos(theta)
+    return (
+        x + a * u,
+        y + b * u,
+        theta,
+        u,
+        pxx + a * (2.0 * pxu + a * puu) + q[0],
+        pxy + b * pxu + a * pyu + a * b * puu,
+        pxu + a * puu,
+        pyy + b * (2.0 * pyu + b * puu) + q[1],
+        pyu + b * puu,
+        puu + q[3],
+        pt + q[2],
     )
 
 
-def _updated(s: _State, z: tuple[float, float, float, float], settings: QuantisationSettings) -> _State:
+def correct(s: FourStates, z: tuple[float, float, float, float], r: Variances) -> FourStates:
     """Eq. 10 with H = I, one component after the other, which is the same because R is diagonal."""
-    r = settings.measurement_noise
-    ratio = 0.5 * ((z[0] - s.x) ** 2 / (s.pxx + r[0]) + (z[1] - s.y) ** 2 / (s.pyy + r[1]))
-    scale = s.scale + INNOVATION_MEMORY * (ratio - s.scale)
-    x, y, u = s.x, s.y, s.u
-    pxx, pxy, pxu, pyy, pyu, puu = s.pxx, s.pxy, s.pxu, s.pyy, s.pyu, s.puu
+    x, y, theta, u, pxx, pxy, pxu, pyy, pyu, puu, pt = s
 
     total = pxx + r[0]
     kx, ky, ku = pxx / total, pxy / total, pxu / total
@@ -189,34 +184,38 @@ def _updated(s: _State, z: tuple[float, float, float, float], settings: Quantisa
     pxx, pxy, pyy = pxx - kx * pxu, pxy - kx * pyu, pyy - ky * pyu
     pxu, pyu, puu = pxu - ku * pxu, pyu - ku * pyu, puu - ku * puu
 
-    kt = s.pt / (s.pt + r[2])
-    theta = wrap_pi(s.theta + kt * wrap_pi(z[2] - s.theta))
-    return _State(x, y, theta, u, pxx, pxy, pxu, pyy, pyu, puu, (1.0 - kt) * s.pt, scale)
+    kt = pt / (pt + r[2])
+    theta = wrap_pi(theta + kt * wrap_pi(z[2] - theta))
+    return x, y, theta, u, pxx, pxy, pxu, pyy, pyu, puu, (1.0 - kt) * pt
 
 
-def _pose(z: Measurement, state: _State | None, travel: Travel) -> Pose:
+def _pose(z: Measurement, state: FourStates | None, scale: float, travel: Travel) -> Pose:
+    floor = fix_covariance(z)
     if state is None:
         return Pose(
-            z.t, z.arrival, z.east, z.north, 0.0, 0.0, covariance=fix_covariance(z), heading_known=False, roll=z.roll,
+            z.t,
+            z.arrival,
+            z.east,
+            z.north,
+            heading=0.0,
+            speed=0.0,
+            covariance=floor,
+            heading_known=False,
+            roll=z.roll,
             pitch=z.pitch,
-        )  # fmt: skip
+        )
+    x, y, theta, u, pxx, pxy, _, pyy, _, _, _ = state
     forward, right, _ = z.antenna
-    east, north = offset_point(state.x, state.y, state.theta, -forward, -right)
-    floor_east, _, floor_north = fix_covariance(z)
+    east, north = offset_point(x, y, theta, -forward, -right)
     return Pose(
         t=z.t,
         arrival=z.arrival,
         east=east,
         north=north,
-        heading=wrap_2pi(state.theta),
-        speed=state.u,
-        covariance=(
-            max(state.scale * state.pxx, floor_east / 4),
-            state.scale * state.pxy,
-            max(state.scale * state.pyy, floor_north / 4),
-        ),
-        heading_known=travel.heading is not None or z.course is not None,
-        standing=abs(state.u) < STANDING,
+        heading=wrap_2pi(theta),
+        speed=u,
+        covariance=(scale * pxx + 0.25 * floor[0], scale * pxy, scale * pyy + 0.25 * floor[2]),
+        standing=abs(u) < STANDING,
         reverse=travel.reverse,
         roll=z.roll,
         pitch=z.pitch,
