@@ -469,9 +469,15 @@ class DropOffset:
 
 @dataclass(frozen=True, slots=True)
 class SetLookAhead:
-    """Predict this many seconds ahead, 0.5 to 3."""
+    """Predict this many seconds ahead, 0.5 to 3; anything else raises ``ValueError``."""
 
     seconds: float
+
+    def __post_init__(self) -> None:
+        """Checks the bounds of Inoue et al."""
+        if not 0.5 <= self.seconds <= 3.0:
+            msg = f"look-ahead: {self.seconds:g} s is not from 0.5 to 3 s"
+            raise ValueError(msg)
 
 
 Command = (

@@ -7,7 +7,7 @@ shares everything immutable: a replay keeps one every so often, to jump back to.
 
 import copy
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any, assert_never
 
 from guidance_app.decode.decoder import Decoder
@@ -71,7 +71,9 @@ class Engine:
         self._frame = self._work.frame
         self._raw_pose: Pose | None = None
         first = Snapshot(0, 0.0, LinkState(), look_ahead_s=self._look_ahead, filter_name=self._filter_name)
-        self._snapshot = replace(first, **self._work.shown_since(first, ()))
+        self._members: Changes = {one.name: getattr(first, one.name) for one in fields(first)}
+        self._members |= self._work.shown_since(first, ())
+        self._snapshot = Snapshot(**self._members)
 
     @property
     def snapshot(self) -> Snapshot:
@@ -93,8 +95,10 @@ class Engine:
             _implement=self._implement.fork(),
             _predictor=self._predictor.fork(),
             _work=self._work.fork(),
-            _snapshot=self._snapshot if generation is None else replace(self._snapshot, generation=generation),
+            _members=dict(self._members),
         )
+        if generation is not None:
+            other._publish(self._snapshot.arrival, {"generation": generation})  # noqa: SLF001 - its own class
         return other
 
     def step(self, event: Event) -> Snapshot:
@@ -128,8 +132,10 @@ class Engine:
         return self._publish(arrival, {"link": link, **NO_POSE})
 
     def _publish(self, arrival: float, changes: Changes) -> Snapshot:
-        sequence = self._snapshot.sequence + 1
-        self._snapshot = replace(self._snapshot, sequence=sequence, arrival=arrival, **changes)
+        self._members |= changes
+        self._members["sequence"] += 1
+        self._members["arrival"] = arrival
+        self._snapshot = Snapshot(**self._members)
         return self._snapshot
 
     def _decoder(self, link: str) -> Decoder:

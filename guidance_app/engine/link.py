@@ -7,6 +7,9 @@ from guidance_app.model import Chunk, Fix, LinkState, LinkStatus, NoFix, Observa
 __all__ = ["after_chunk", "after_down", "after_up"]
 
 
+SILENT = frozenset({LinkStatus.CONNECTING, LinkStatus.NO_DATA, LinkStatus.NO_SENTENCE, LinkStatus.DOWN})
+
+
 def _changed(state: LinkState, status: LinkStatus, arrival: float, reason: str) -> LinkState:
     since = state.since if status is state.status else arrival
     return replace(state, status=status, since=since, reason=reason)
@@ -27,23 +30,28 @@ def after_chunk(state: LinkState, chunk: Chunk, closed: tuple[Observation, ...],
     """What came in may change the state. ``counts`` are the decoder's (sentences, rejected) so far."""
     if not chunk.data and not closed:
         return state
-    sentences, rejected = counts
     fixes = sum(isinstance(one, Fix) for one in closed)
-    state = replace(
-        state,
+    status, reason = _told(state, closed, counts[0], fixes)
+    return LinkState(
+        status=status,
+        since=state.since if status is state.status else chunk.arrival,
+        reason=reason,
         last_data=chunk.arrival if chunk.data else state.last_data,
-        sentences=sentences,
-        rejected=rejected,
+        sentences=counts[0],
+        rejected=counts[1],
         fixes=state.fixes + fixes,
     )
+
+
+def _told(state: LinkState, closed: tuple[Observation, ...], sentences: int, fixes: int) -> tuple[LinkStatus, str]:
+    """What the link says of itself now, and why."""
     if fixes:
-        return _changed(state, LinkStatus.FIX, chunk.arrival, "")
+        return LinkStatus.FIX, ""
     without = next((one for one in closed if isinstance(one, NoFix)), None)
     if without is not None:
-        return _changed(state, LinkStatus.NO_FIX, chunk.arrival, without.reason)
+        return LinkStatus.NO_FIX, without.reason
     if sentences == 0:
-        reason = "bytes arrive but no sentence is valid: is the baud rate right?"
-        return _changed(state, LinkStatus.NO_SENTENCE, chunk.arrival, reason)
-    if state.status in {LinkStatus.CONNECTING, LinkStatus.NO_DATA, LinkStatus.NO_SENTENCE, LinkStatus.DOWN}:
-        return _changed(state, LinkStatus.NO_FIX, chunk.arrival, "sentences arrive, but no position yet")
-    return state
+        return LinkStatus.NO_SENTENCE, "bytes arrive but no sentence is valid: is the baud rate right?"
+    if state.status in SILENT:
+        return LinkStatus.NO_FIX, "sentences arrive, but no position yet"
+    return state.status, state.reason
