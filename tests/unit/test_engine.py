@@ -85,8 +85,8 @@ def test_right_of_the_pass_is_positive_in_both_directions(back: bool, sign: floa
     engine = Engine(a_job(field=False))
     for chunk in path_chunks([(0.0, 0.0), (0.0, 100.0), (0.5, 100.0), (0.5, 0.0 if back else 200.0)]):
         snapshot = engine.step(chunk)
-        if chunk.arrival == 42.0:
-            engine.step(Commanded(42.0, TakePass(0)))
+        if chunk.arrival == 60.0:
+            engine.step(Commanded(60.0, TakePass(0)))
     assert snapshot.guidance is not None
     assert snapshot.guidance.cross_track == pytest.approx(sign * 0.5, abs=5 * CENTIMETRE)
 
