@@ -142,7 +142,8 @@ def _sensed(truth: Track, random: np.random.Generator, outlier_share: float) -> 
     jumps = steps(count, interval, 0.25, 40.0, random)
     error = drift + jumps + random.normal(0.0, 0.02, (count, 2))
     error = error - error[standing].mean(axis=0) + outliers(count, outlier_share, random)
-    velocity = truth.velocity + random.normal(0.0, 0.05, (count, 2))
+    swing = truth.yaw_rate[:, np.newaxis] * np.array([-LEVER_ARM[1], LEVER_ARM[0]])  # a receiver tells its antenna's
+    velocity = truth.velocity + _turned(swing, truth.heading) + random.normal(0.0, 0.05, (count, 2))
     compass = gauss_markov(count, interval, math.radians(2.0), 200.0, random)[:, 0]
     compass = truth.heading + compass + random.normal(0.0, math.radians(0.2), count)
     zero = math.radians(0.35) * random.standard_normal()
