@@ -1,5 +1,6 @@
-"""The fixtures of the browser, for all tests of the console."""
+"""The fixtures of the browser and of the console, for all tests of the console."""
 
 from support.chromium import chromium, open_page
+from support.consoles import start_console
 
-__all__ = ["chromium", "open_page"]
+__all__ = ["chromium", "open_page", "start_console"]

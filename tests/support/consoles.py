@@ -1,0 +1,94 @@
+"""Consoles for tests: started on a free port, closed after the test, with a scene of next to nothing unless asked."""
+
+import contextlib
+import threading
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import httpx
+import pytest
+import viser
+from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Origin, Subprotocol
+
+from guidance_app.console.server import Console
+from guidance_app.runtime import Session
+from support.sessions import HandSession
+
+__all__ = [
+    "VISER",
+    "PlainScreen",
+    "StartConsole",
+    "client_of",
+    "live_socket",
+    "running_console",
+    "start_console",
+    "viser_socket",
+]
+
+VISER = Subprotocol(f"viser-v{viser.__version__}")
+PATIENCE_S = 10.0
+
+StartConsole = Callable[..., Console]
+
+
+class PlainScreen:
+    """A screen with one text field, which remembers viser's server so that a test can write to it."""
+
+    def __init__(self, server: viser.ViserServer, session: Session) -> None:
+        self.server = server
+        self.session = session
+        self.came = threading.Event()
+        self.closed = False
+        self.typed = threading.Event()
+
+    def start(self) -> None:
+        self.field = self.server.gui.add_text("Field", initial_value="")
+        self.field.on_update(lambda _: self.typed.set())
+        self.server.on_client_connect(lambda _: self.came.set())
+
+    def close(self) -> None:
+        self.closed = True
+
+
+@pytest.fixture
+def start_console() -> Iterator[StartConsole]:
+    """``start_console(session, **options)`` gives a started console; its screen is ``PlainScreen`` by default."""
+    with contextlib.ExitStack() as started:
+
+        def start(session: Any = None, **options: Any) -> Console:
+            return started.enter_context(running_console(session, **options))
+
+        yield start
+
+
+@contextlib.contextmanager
+def running_console(session: Any = None, **options: Any) -> Iterator[Console]:
+    """The same for a longer time than one test."""
+    console = Console(session or HandSession(), **{"port": 0, "screen_factory": PlainScreen, **options})
+    console.start()
+    try:
+        yield console
+    finally:
+        console.close()
+
+
+def client_of(console: Console, **headers: str) -> httpx.Client:
+    """An HTTP client at the console's address."""
+    return httpx.Client(base_url=console.addresses[0], headers=headers, timeout=PATIENCE_S)
+
+
+def live_socket(console: Console, **options: Any) -> ClientConnection:
+    """The light bar's socket, opened as the page opens it."""
+    return _socket(console, "/live", **options)
+
+
+def viser_socket(console: Console, **options: Any) -> ClientConnection:
+    """Viser's socket through the front, opened as the page opens it."""
+    return _socket(console, "/", subprotocols=[VISER], max_size=None, compression=None, **options)
+
+
+def _socket(console: Console, path: str, **options: Any) -> ClientConnection:
+    address = console.addresses[0]
+    options.setdefault("origin", Origin(address))
+    return connect(address.replace("http", "ws", 1) + path, open_timeout=PATIENCE_S, proxy=None, **options)
