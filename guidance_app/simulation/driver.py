@@ -43,7 +43,7 @@ class DriverSettings:
     convergence: float = 0.45
     braking: float = 0.5
     attention_s: float = 0.2
-    wander: float = 0.10
+    wander: float = 0.08
     wander_s: float = 5.0
     gear_s: float = 1.6
 

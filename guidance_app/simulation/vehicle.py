@@ -14,7 +14,7 @@ from guidance_app.angles import wrap_2pi
 __all__ = ["TractorModel", "VehicleState", "model_for", "moved", "rear_axle", "slip_and_yaw_rate", "standing_at"]
 
 REST = math.radians(0.3)
-"""A smaller difference between the wanted and the present steering angle does not move the valve."""
+"""A smaller difference between the wanted and the present steering angle does not set the valve going."""
 
 MASS_SHARE_REAR = 0.59
 """Of the wheelbase, the distance from the centre of gravity to the front axle: a tractor rests on its rear wheels."""
@@ -129,9 +129,9 @@ def moved(
 def _steered(model: TractorModel, state: VehicleState, wanted: float, dt: float) -> VehicleState:
     """Equations 25 and 26: the valve idles when it starts or turns round, then the angle changes at one rate."""
     gap = wanted - state.steering
-    if abs(gap) < REST:
+    way = (gap > 0) - (gap < 0)
+    if way == 0 or (way != state.turning and abs(gap) < REST):
         return replace(state, turning=0, idling=0.0)
-    way = 1 if gap > 0 else -1
     if way != state.turning:
         idling = state.idling + dt
         if idling < model.idle:
