@@ -51,7 +51,7 @@ class Framer:
             self._take_line(line, found)
             self._fresh, self._comment = True, False
         self._rest = lines[-1]
-        if len(self._rest) > MAX_LENGTH:
+        if len(self._rest) > MAX_LENGTH or self._rest.rfind(b"$") > 0:
             self._shorten(found)
         return found
 
@@ -85,7 +85,7 @@ class Framer:
         return [line[start:end] for start, end in zip(starts, ends, strict=False)]
 
     def _shorten(self, found: list[str]) -> None:
-        """Keeps of an unfinished line that is too long only what may still become a sentence."""
+        """Takes the sentences of an unfinished line that another has ended; keeps what may still become one."""
         rest = self._rest
         last = rest.rfind(b"$")
         if self._comment or (last < 0 and not self._fresh):
