@@ -22,6 +22,8 @@ __all__ = ["Control", "Driver", "DriverSettings", "Seen", "steering_towards"]
 
 SLOWEST = 0.2
 """Metres per second; slower than this nobody rolls on purpose."""
+WALKING = 1.0
+"""Metres per second; slower than this the wheel is turned as if it went so fast, not to its stop."""
 ARRIVED = 0.08
 """Metres before its end at which a stretch is driven."""
 STANDING = 0.02
@@ -77,13 +79,13 @@ class Control:
 def steering_towards(model: TractorModel, seen: Seen, predicted: Place, settings: DriverSettings) -> float:
     """The steering angle that turns to the heading of equation 24 within the look-ahead.
 
-    ``predicted`` is where the guided point will be then. In reverse it is the way of travel that is turned.
+    ``predicted`` is where the guided point will be then. In reverse it is the way of travel that is turned. The speed
+    must not be zero.
     """
     backwards = seen.speed < 0
     wanted = predicted.heading - math.atan(settings.convergence * predicted.right) + (math.pi if backwards else 0.0)
     yaw_rate = wrap_pi(wanted - seen.heading) / settings.look_ahead_s
-    speed = math.copysign(max(abs(seen.speed), SLOWEST), seen.speed)
-    return yaw_rate / slip_and_yaw_rate(model, speed, 1.0)[1]
+    return yaw_rate / slip_and_yaw_rate(model, seen.speed, 1.0)[1]
 
 
 class Driver:
@@ -143,7 +145,7 @@ class Driver:
 
     def _steering(self, stretch: Stretch, seen: Seen, wanted_speed: float) -> float:
         ahead = self._settings.look_ahead_s
-        rolling = seen if abs(seen.speed) > SLOWEST else _starting(seen, wanted_speed)
+        rolling = _at_least(WALKING, seen, wanted_speed)
         course = rolling.heading + rolling.yaw_rate * ahead / 2
         east = rolling.east + rolling.speed * ahead * math.sin(course)
         north = rolling.north + rolling.speed * ahead * math.cos(course)
@@ -167,9 +169,8 @@ class Driver:
         return self._settings.work_speed if straight else self._settings.turn_speed
 
     def _implement_down(self, stretch: Stretch) -> bool:
-        if stretch.reverse:
-            return False
-        return stretch.part_at(max(0.0, self._along - self._implement_back)).implement_down
+        where = self._along - self._implement_back
+        return not stretch.reverse and where >= 0 and stretch.part_at(where).implement_down
 
     def _at_end(self, t: float, seen: Seen) -> Control:
         """Stands, changes gear and goes on with the next stretch; after the last one the job is done."""
@@ -188,7 +189,10 @@ class Driver:
         return Control(self._control.steering, 0.0, implement_down=False, part=part, along=self._along, finished=last)
 
 
-def _starting(seen: Seen, wanted_speed: float) -> Seen:
-    """From standing, the driver thinks of the speed to come."""
-    speed = math.copysign(max(abs(seen.speed), 2 * SLOWEST), wanted_speed)
-    return Seen(seen.east, seen.north, seen.heading, speed, 0.0)
+def _at_least(slowest: float, seen: Seen, wanted_speed: float) -> Seen:
+    """What is seen, as if it went at least so fast: a driver who starts thinks of the speed to come."""
+    if abs(seen.speed) >= slowest:
+        return seen
+    share = abs(seen.speed) / slowest
+    speed = math.copysign(slowest, wanted_speed)
+    return Seen(seen.east, seen.north, seen.heading, speed, seen.yaw_rate * share)
