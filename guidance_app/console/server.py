@@ -2,11 +2,9 @@
 
 import contextlib
 import socket
-import threading
 from collections.abc import Callable
 from typing import Protocol
 
-import uvicorn
 import viser
 
 from guidance_app.console.access import Door, Names, new_pin
@@ -25,17 +23,13 @@ from guidance_app.console.inner import InnerViser
 from guidance_app.console.live import LiveHub
 from guidance_app.console.qr import terminal_qr
 from guidance_app.console.screen import Screen
+from guidance_app.console.web_server import WebServer
 from guidance_app.runtime import Session
 
 __all__ = ["Console", "ConsoleError", "Download", "Picture", "ScreenFactory"]
 
 DEFAULT_PORT = 8080
 """Where the console is found when nothing else is asked for."""
-START_S = 15.0
-STOP_S = 10.0
-GRACE_S = 3
-BIGGEST_MESSAGE = 64 * 1024 * 1024
-"""The largest message from a browser: viser's own limit is 50 MB, and its upload button splits files."""
 
 
 class Picture(Protocol):
@@ -51,28 +45,6 @@ class Picture(Protocol):
 
 
 ScreenFactory = Callable[[viser.ViserServer, Session], Picture]
-
-
-class _Front(uvicorn.Server):
-    """uvicorn on a thread of its own, which tells when it is ready."""
-
-    def __init__(self, config: uvicorn.Config) -> None:
-        super().__init__(config)
-        self.ready = threading.Event()
-
-    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        await super().startup(sockets)
-        self.ready.set()
-
-    def run_until_told(self, listener: socket.socket) -> None:
-        try:
-            self.run(sockets=[listener])
-        finally:
-            self.ready.set()
-
-    def end(self, thread: threading.Thread) -> None:
-        self.should_exit = True
-        thread.join(STOP_S)
 
 
 class Console:
@@ -121,7 +93,7 @@ class Console:
             screen = self._screen_factory(inner.server, self._session)
             screen.start()
             opened.callback(screen.close)
-            self._serve(self._application(inner, port), listener, opened)
+            opened.callback(WebServer(self._application(inner, port), listener).close)
             self._closing = opened.pop_all()
         self.addresses = tuple(f"http://{host}:{port}" for host in self._reachable())
         return self.addresses[0]
@@ -143,28 +115,6 @@ class Console:
         app = front_app(files, self.hub, inner.uri, inner.headers, self.downloads)
         names = Names(own_names() | {self._host, LOOPBACK, "::1"}, any_number=self._lan)
         return Guard(app, Door(self.pin), files, names, cookie=f"guidance_{port}")
-
-    def _serve(self, app: Guard, listener: socket.socket, opened: contextlib.ExitStack) -> None:
-        front = _Front(
-            uvicorn.Config(
-                app,
-                log_config=None,
-                log_level="error",
-                access_log=False,
-                server_header=False,
-                lifespan="on",
-                ws="websockets-sansio",
-                ws_max_size=BIGGEST_MESSAGE,
-                ws_per_message_deflate=False,
-                timeout_graceful_shutdown=GRACE_S,
-            )
-        )
-        thread = threading.Thread(target=front.run_until_told, args=(listener,), name="console-front", daemon=True)
-        thread.start()
-        opened.callback(front.end, thread)
-        if not front.ready.wait(START_S) or not front.started:
-            msg = "The web server did not start; look at the lines above for the reason."
-            raise ConsoleError(msg)
 
     def _reachable(self) -> tuple[str, ...]:
         if self._host != ALL_INTERFACES:

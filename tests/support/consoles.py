@@ -8,7 +8,9 @@ from typing import Any
 import httpx
 import pytest
 import viser
+from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
+from websockets.sync.connection import Connection
 from websockets.typing import Origin, Subprotocol
 
 from guidance_app.console.server import Console
@@ -23,6 +25,7 @@ __all__ = [
     "live_socket",
     "running_console",
     "start_console",
+    "until_closed",
     "viser_socket",
 ]
 
@@ -86,6 +89,15 @@ def live_socket(console: Console, **options: Any) -> ClientConnection:
 def viser_socket(console: Console, **options: Any) -> ClientConnection:
     """Viser's socket through the front, opened as the page opens it."""
     return _socket(console, "/", subprotocols=[VISER], max_size=None, compression=None, **options)
+
+
+def until_closed(socket: Connection) -> int | None:
+    """Reads until the other side closes; its close code."""
+    try:
+        while True:
+            socket.recv(timeout=PATIENCE_S)
+    except ConnectionClosed as closed:
+        return None if closed.rcvd is None else closed.rcvd.code
 
 
 def _socket(console: Console, path: str, **options: Any) -> ClientConnection:
