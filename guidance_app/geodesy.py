@@ -13,7 +13,7 @@ from pyproj import Transformer
 
 from guidance_app.model import FloatArray
 
-__all__ = ["FieldFrame", "grid_cell"]
+__all__ = ["MAX_REACH", "FieldFrame", "grid_cell"]
 
 METRES_PER_MINUTE = 1852.0
 """One minute of latitude, in the sense of the nautical mile."""
