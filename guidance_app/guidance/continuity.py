@@ -2,12 +2,15 @@
 
 More than 5 m between epochs is a jump when the fixes stayed away (2 s, or two and a half usual intervals) or when it
 would have needed more than 15 m/s; a receiver of 1 Hz on a tractor at 25 km/h moves 7 m an epoch without a jump.
+What is no number, or lies farther from the field than a field frame reaches, is no place at all.
 """
 
 import math
 from dataclasses import dataclass
 
-__all__ = ["Continuity"]
+from guidance_app.geodesy import MAX_REACH
+
+__all__ = ["Continuity", "is_place"]
 
 JUMP = 5.0
 """Shorter moves never count as a jump."""
@@ -20,6 +23,14 @@ OUTAGE = 2.0
 
 OUTAGE_INTERVALS = 2.5
 """The same in usual intervals, for a slower receiver."""
+
+LONGEST_INTERVAL = 10.0
+"""Seconds; epochs farther apart are never usual."""
+
+
+def is_place(east: float, north: float, *others: float) -> bool:
+    """Whether this is a position of the field; whatever else comes with it has to be finite too."""
+    return abs(east) <= MAX_REACH and abs(north) <= MAX_REACH and all(map(math.isfinite, others))
 
 
 @dataclass(slots=True)
@@ -39,9 +50,10 @@ class Continuity:
         self.t, self.east, self.north = t, east, north
         if before is None or seconds < 0:
             return False
-        outage = seconds > max(OUTAGE, OUTAGE_INTERVALS * self.interval) and self.interval > 0
-        if not outage and seconds > 0:
-            self.interval += (seconds - self.interval) * (0.1 if self.interval else 1.0)
+        outage = seconds > (max(OUTAGE, OUTAGE_INTERVALS * self.interval) if self.interval else LONGEST_INTERVAL)
+        if seconds > 0:
+            usual = min(seconds, LONGEST_INTERVAL)
+            self.interval += (usual - self.interval) * (0.1 if self.interval else 1.0)
         if distance <= JUMP:
             return True
         return not outage and distance <= FASTEST * seconds

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
-from guidance_app.guidance.continuity import Continuity
+from guidance_app.guidance.continuity import Continuity, is_place
 from guidance_app.guidance.coverage_grid import CoverageGrid, Ground, Patch
 from guidance_app.guidance.trail import Run, StripTrail
 from guidance_app.model import CoverageTotals, Trail
@@ -130,10 +130,10 @@ class Coverage:
     ) -> None:
         """One epoch: east, north, heading of the implement's middle, and what works from now on.
 
-        Bit 0 of ``sections_on`` is the leftmost section; None means all. What is not a number is left out.
+        Bit 0 of ``sections_on`` is the leftmost section; None means all. What is no place is left out.
         """
         east, north, heading = implement
-        if not all(map(math.isfinite, (east, north, heading, t))):
+        if not is_place(east, north, heading, t):
             return
         edge = self._edge_at(east, north, heading, t)
         state = _State(self._parts(sections_on), pass_number) if down else _State()

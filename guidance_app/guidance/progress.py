@@ -8,16 +8,25 @@ import bisect
 import itertools
 import math
 
-__all__ = ["DONE_FRACTION", "Progress"]
+__all__ = ["Progress", "enough"]
 
 DONE_FRACTION = 0.9
 """A pass counts as done when this much of its length has been worked."""
+
+SHORT_REST = 3.0
+"""On a short pass so many metres may be missing: two fixes at its entry are more than a tenth of it."""
 
 JOINED = 0.5
 """Stretches with less than this between them are one."""
 
 MOST_STRETCHES = 64
 """More stretches of one pass than this are joined across their smallest gap: bounded memory."""
+
+
+def enough(length: float) -> float:
+    """Metres that have to be worked of a pass of this length; at least half of it."""
+    return min(DONE_FRACTION * length, max(length - SHORT_REST, 0.5 * length))
+
 
 Stretches = tuple[tuple[float, float], ...]
 

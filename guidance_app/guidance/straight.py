@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from guidance_app.angles import wrap_pi
-from guidance_app.guidance.continuity import Continuity
+from guidance_app.guidance.continuity import Continuity, is_place
 from guidance_app.model import FloatArray, Pose
 
 __all__ = ["StraightStretch"]
@@ -58,8 +58,7 @@ class StraightStretch:
 
         Both lie on the line of least squared distances to the stretch, A where it began.
         """
-        numbers = (pose.t, pose.east, pose.north, pose.heading, pose.speed)
-        if not all(map(math.isfinite, numbers)):
+        if not is_place(pose.east, pose.north, pose.t, pose.heading, pose.speed):
             return None
         continuous = self._continuity.step(pose.t, pose.east, pose.north)
         if not (continuous and pose.heading_known and pose.speed > SLOWEST):

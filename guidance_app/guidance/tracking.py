@@ -11,13 +11,13 @@ from collections.abc import Iterable
 import shapely
 
 from guidance_app.guidance.choice import ENDLESS_DONE, Choice
-from guidance_app.guidance.continuity import Continuity
+from guidance_app.guidance.continuity import Continuity, is_place
 from guidance_app.guidance.family import Learner, PassFamily
 from guidance_app.guidance.itinerary import FamilyItinerary, GuideLine, Itinerary, Path, PlanItinerary
 from guidance_app.guidance.learning import DrivenPass
 from guidance_app.guidance.offsets import LineOffsets
 from guidance_app.guidance.polyline import Foot, Polyline
-from guidance_app.guidance.progress import DONE_FRACTION, Progress
+from guidance_app.guidance.progress import Progress, enough
 from guidance_app.guidance.reading import ALIGNED, COME, STAY, Reader, Reading, Seen
 from guidance_app.guidance.travel import TravelDirection, drives_against
 from guidance_app.model import FloatArray, Guidance, OffsetKind, OffsetRecord, Pass, Plan, Pose, TurnGuide
@@ -115,9 +115,9 @@ class Tracker:
     # --- one epoch --------------------------------------------------------------------------------------------------
 
     def step(self, pose: Pose, point: tuple[float, float], working: bool) -> Guidance | None:
-        """Guidance of the guided point (east, north) at this pose; None while there is no pass, or not a number."""
+        """Guidance of the guided point (east, north) at this pose; None without a pass there, or at no place."""
         seen = Seen(pose.t, *point, pose.heading, pose.heading_known, working)
-        if not all(map(math.isfinite, seen[:4])):
+        if not is_place(seen.east, seen.north, seen.t, seen.heading):
             return None
         moved = math.hypot(seen.east - self._continuity.east, seen.north - self._continuity.north)
         continuous = self._continuity.step(seen.t, seen.east, seen.north)
@@ -169,7 +169,7 @@ class Tracker:
             for start, end in _stretches(self._work_from, along, line):
                 self._progress.add(line.key, start, end)
             wanted = line.work_length
-            if wanted is not None and 0 < DONE_FRACTION * wanted <= self._progress.worked(line.key):
+            if wanted is not None and 0 < enough(wanted) <= self._progress.worked(line.key):
                 self._progress.finish(line.key)
         self._work_from = along if seen.working and beside else None
 
@@ -307,7 +307,7 @@ class Tracker:
         target, length = reading.line.target, reading.line.polyline.length
         if target.endless:
             return None
-        missing = DONE_FRACTION * length - self._progress.worked(reading.line.key)
+        missing = enough(length) - self._progress.worked(reading.line.key)
         if target.closed and reading.to_end < missing:
             return reading.to_end + length
         return max(reading.to_end, 0.0)

@@ -10,7 +10,7 @@ import math
 import numpy as np
 import shapely
 
-from guidance_app.guidance.continuity import Continuity
+from guidance_app.guidance.continuity import Continuity, is_place
 from guidance_app.model import FloatArray, Strip, Trail
 
 __all__ = ["MOST_ROWS", "StripTrail", "TrackTrail"]
@@ -117,8 +117,8 @@ class TrackTrail:
         return other
 
     def step(self, t: float, east: float, north: float, heading: float) -> None:
-        """One position of the track; what is not a number is left out."""
-        if not all(map(math.isfinite, (t, east, north, heading))):
+        """One position of the track; what is no place is left out."""
+        if not is_place(east, north, t, heading):
             return
         if not self._continuity.step(t, east, north):
             self._seal(_Rows(2))
