@@ -11,13 +11,12 @@ from collections.abc import Sequence
 
 from guidance_app import __version__
 from guidance_app.commands import COMMANDS
-from guidance_app.commands.options import known_errors
 
 __all__ = ["main"]
 
 
-def parser() -> argparse.ArgumentParser:
-    """The whole command line. Each sub-command is a module of ``commands`` and describes itself."""
+def parser(wanted: str | None) -> argparse.ArgumentParser:
+    """The command line. Each sub-command is a module of ``commands`` and describes itself; only ``wanted`` loads."""
     top = argparse.ArgumentParser(
         prog="guidance-app",
         description="The guidance console for tractors without autosteer: an ordinary receiver, any tablet's browser.",
@@ -25,19 +24,26 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action="version", version=f"guidance-app {__version__}")
     subparsers = top.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for module in COMMANDS.values():
-        importlib.import_module(module).add_parser(subparsers)
+    for name, line in COMMANDS.items():
+        if name == wanted:
+            importlib.import_module(f"guidance_app.commands.{name}").add_parser(subparsers)
+        else:
+            subparsers.add_parser(name, help=line)
     return top
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs one command line; the exit status."""
-    parsed = parser().parse_args(arguments)
+    given = sys.argv[1:] if arguments is None else list(arguments)
+    wanted = next((one for one in given if not one.startswith("-")), None)
+    parsed = parser(wanted).parse_args(given)
     try:
         status: int = parsed.func(parsed)
         sys.stdout.flush()
-    except known_errors() as error:
-        print(f"guidance-app: {_one_line(error)}", file=sys.stderr)
+    except Exception as error:
+        if not _is_known(error):
+            raise
+        print(f"guidance-app: {' '.join(str(error).split())}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return 130
@@ -48,5 +54,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return status
 
 
-def _one_line(error: BaseException) -> str:
-    return " ".join(str(error).split())
+def _is_known(error: Exception) -> bool:
+    """Whether its message is a sentence for the person at the terminal."""
+    from guidance_app.commands.options import known_errors  # noqa: PLC0415 - loads much that the help does not need
+
+    return isinstance(error, known_errors())

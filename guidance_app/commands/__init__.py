@@ -7,8 +7,16 @@ __all__ = ["COMMANDS"]
 
 COMMANDS: Mapping[str, str] = MappingProxyType(
     {
-        name: f"guidance_app.commands.{name}"
-        for name in ("demo", "run", "replay", "inspect", "process", "plan", "evaluate", "tune", "sample", "bench")
+        "demo": "see it drive: the embedded sample, played at once",
+        "run": "drive: the console on a live receiver",
+        "replay": "play a receiver's log on the console",
+        "inspect": "say what a receiver's log holds",
+        "process": "run a log through the engine without a screen and write a table",
+        "plan": "plan a field's passes at the desk",
+        "evaluate": "repeat the papers' protocols and the scenarios, beside the goals",
+        "tune": "fit the filters to simulated or recorded drives",
+        "sample": "make the embedded sample again",
+        "bench": "measure speed, growth and delay, as ratios",
     }
 )
-"""Name -> module, in the order of the help."""
+"""Name (and module) -> its line in the help, in the order of the help. Only the module that is asked for is loaded."""

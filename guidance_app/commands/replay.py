@@ -41,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Plays until stopped."""
     log = load_log(arguments.log)
     if not log.has_fix:
-        msg = f"{arguments.log} holds no position fix, so there is nothing to show: guidance-app inspect says what it holds"
+        msg = f"{arguments.log} holds no position fix, nothing can be shown: see guidance-app inspect"
         raise UseError(msg)
     data = chosen_data_folder(arguments)
     session = ReplaySession(job_from_options(arguments), log, arguments.filter, arguments.speed)

@@ -18,7 +18,7 @@ STOPPED = 0.1
 """Work goes on above this speed (m/s) once it has begun."""
 STRAIGHT, TURNED = math.radians(20.0), math.radians(40.0)
 """Heading errors below which work begins, and above which it ends."""
-NEAR, FAR = 0.35, 0.75
+NEAR, FAR = 0.5, 0.75
 """The same for the cross-track error, in parts of the working width."""
 
 

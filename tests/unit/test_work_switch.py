@@ -24,7 +24,7 @@ def test_on_the_pass_the_implement_goes_down_by_itself() -> None:
         None,
         replace(ON, on_pass=False),
         replace(ON, heading_error=math.radians(25)),
-        replace(ON, cross_track=1.2),
+        replace(ON, cross_track=1.7),
     ],
     ids=["no line", "beyond the ends", "turned", "beside"],
 )
@@ -33,7 +33,7 @@ def test_off_the_pass_it_stays_up(guidance: Guidance | None) -> None:
 
 
 def test_a_working_implement_bears_more_than_a_lifted_one() -> None:
-    edge = replace(ON, heading_error=math.radians(30), cross_track=1.5)
+    edge = replace(ON, heading_error=math.radians(30), cross_track=1.9)
     assert not WorkSwitch(3.0).after(POSE, edge, None).down
     assert WorkSwitch(3.0, down=True).after(POSE, edge, None).down
 
