@@ -1,0 +1,101 @@
+"""``sim:`` is a receiver like any other: options with bounds, an epoch a chunk, no end."""
+
+import itertools
+import threading
+
+import numpy as np
+import pytest
+
+from guidance_app.decode.decoder import Decoder
+from guidance_app.model import Chunk, Fix, SourceUp
+from guidance_app.simulation.sample import sample_job
+from guidance_app.sources import SourceError, open_source
+from guidance_app.sources.simulated import open_simulated, sample_drive
+
+
+def chunks_of(uri: str, count: int) -> list[Chunk]:
+    events = open_simulated(uri).events(threading.Event())
+    first, *rest = itertools.islice(events, count + 1)
+    assert isinstance(first, SourceUp)
+    assert all(isinstance(event, Chunk) for event in rest)
+    return [event for event in rest if isinstance(event, Chunk)]
+
+
+def fixes_of(chunks: list[Chunk]) -> list[Fix]:
+    decoder = Decoder()
+    seen = [one for chunk in chunks for one in decoder.feed(chunk)]
+    assert decoder.rejected == {}
+    return [one for one in seen if isinstance(one, Fix)]
+
+
+def test_chunks_are_epochs_with_their_own_times() -> None:
+    chunks = chunks_of("sim:?rate=10", 200)
+    assert [chunk.arrival for chunk in chunks] == pytest.approx(list(np.arange(200) / 10))
+    fixes = fixes_of(chunks)
+    assert np.diff([fix.t for fix in fixes]) == pytest.approx(0.1)
+
+
+def test_every_option_does_something() -> None:
+    plain = chunks_of("sim:", 60)
+    assert plain == chunks_of("sim:?seed=1&rate=5&decimals=4&speed=9&sentences=GGA,RMC,VTG", 60)
+    for option in ("seed=2", "rate=10", "decimals=7", "speed=4", "sentences=GGA,HDT,ROT"):
+        assert chunks_of(f"sim:?{option}", 60) != plain, option
+    heading = fixes_of(chunks_of("sim:?sentences=gga,hdt", 5))[0].heading
+    assert heading is not None
+    cell = fixes_of(chunks_of("sim:?decimals=7", 5))[0].cell
+    assert cell is not None
+    assert cell[0] == pytest.approx(0.0001852)
+
+
+def test_it_drives_the_field_over_and_over() -> None:
+    job = sample_job()
+    drive = sample_drive(job)
+    round_m = sum(segment.length for segment in (*drive.passes, *drive.way_back))
+    count = int(1.25 * round_m / (15 / 3.6) * 2)  # more than a round at 15 km/h, had it no turns
+    fixes = fixes_of(chunks_of("sim:?rate=2&speed=15", 2 * count))
+    places = np.array([drive.frame.east_north_from_degrees(fix.latitude_deg, fix.longitude_deg) for fix in fixes])
+    beginning = drive.passes[0].points[0]
+    near = np.hypot(*(places - beginning).T) < 3.0
+    visits = int((np.diff(near.astype(int)) == 1).sum())
+    assert visits >= 1
+    steps = np.hypot(*np.diff(places, axis=0).T)
+    assert steps.max() < 4.0  # it never jumps
+
+
+def test_it_stops_when_it_is_told() -> None:
+    stop = threading.Event()
+    events = open_simulated("sim:").events(stop)
+    next(events)
+    next(events)
+    stop.set()
+    assert list(events) == []
+
+
+def test_a_source_opened_by_its_uri_keeps_time_by_itself() -> None:
+    source = open_source("sim:?seed=3")
+    assert source.live
+    assert source.duration is None
+    assert "simulated" in source.description
+
+
+@pytest.mark.parametrize(
+    ("uri", "sentence"),
+    [
+        ("sim:field", "come only options"),
+        ("sim:?colour=red", "'colour' is no option of sim:; there are rate, decimals, seed, speed, sentences"),
+        ("sim:?rate=3", "it is one of 1, 2, 5, 10, 25, 50 Hz"),
+        ("sim:?rate=", "rate is ''"),
+        ("sim:?rate=5&rate=5", "given twice"),
+        ("sim:?decimals=1", "from 2 to 9"),
+        ("sim:?decimals=4.5", "from 2 to 9"),
+        ("sim:?seed=-1", "whole number from 0"),
+        ("sim:?seed=99999999999", "whole number from 0"),
+        ("sim:?speed=nan", "2 to 15 km/h"),
+        ("sim:?speed=100", "2 to 15 km/h"),
+        ("sim:?sentences=RMC", "GGA and any of"),
+        ("sim:?sentences=GGA,XYZ", "GGA and any of"),
+    ],
+)
+def test_an_impossible_option_is_refused_in_a_sentence(uri: str, sentence: str) -> None:
+    with pytest.raises(SourceError, match=sentence):
+        open_simulated(uri)
