@@ -57,6 +57,7 @@ _find_prefixes = re.compile(
     rb"|([0-9]{10})([0-9]{3}|\.[0-9]*)?(?=[\s,;\])]))[^\r\n$]*\$",
     re.MULTILINE,
 ).finditer
+_match_common_name = re.compile(r"\$[A-Z]{2}(?:GGA|RMC|VTG|GLL|GNS|GSA|GSV|HDT|ZDA),").match
 _find_lines = re.compile(rb"[^\r\n]*\$[^\r\n]*").finditer
 
 
@@ -198,11 +199,10 @@ def _refuse_other_files(path: Path, data: bytes) -> None:
         for line in lines:
             if _is_sound(line):
                 return
-            damaged += 1
+            damaged += _match_common_name(line) is not None
     if damaged:
         raise SourceError(
-            f"{path} holds no sentence of a receiver that is whole: if it is a receiver's log, it was damaged on the"
-            " way; copy it again."
+            f"{path} is a receiver's log in which not one sentence is whole: it was damaged on the way; copy it again."
         )
     raise SourceError(
         f"{path} is not a receiver's log: it holds no NMEA sentence ($GPGGA,... and the like); choose the file that"
