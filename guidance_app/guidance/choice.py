@@ -9,8 +9,9 @@ in this order:
 3. Where the implement is lowered off the target, a pass within half a spacing and along the heading is meant, done or
    not, if it is nearer by a fifth of a spacing.
 4. A pass not yet done that is nearer by a fifth of a spacing and within 30 degrees of the heading, for a second and
-   two metres, takes over. Against a plan's order it has to be so for three seconds and ten metres, and not on the
-   planned way to the target: a lap's square corner or a way along another pass is not a wish to drive that one.
+   two metres, takes over. Against a plan's order that is under way it has to be so for three seconds and ten metres,
+   and not on the planned way to the target: a lap's square corner or a way along another pass is not a wish to drive
+   that one.
 """
 
 import copy
@@ -84,7 +85,7 @@ class Choice:
         if self.held or self._on_the_way(seen, key):
             self._better = None
             return key
-        return self._settled(seen, reading, progress.done)
+        return self._settled(seen, reading, progress)
 
     def _engage(self, seen: Seen, reading: Reading) -> None:
         if reading.on_pass:
@@ -108,9 +109,9 @@ class Choice:
     def _clearly_nearer(self, distance: float, reading: Reading) -> bool:
         return distance <= reading.foot.distance - CLEARLY_NEARER * self.spacing
 
-    def _settled(self, seen: Seen, reading: Reading, done: Set[int]) -> int:
+    def _settled(self, seen: Seen, reading: Reading, progress: Progress) -> int:
         key = reading.line.key
-        distance, nearest = self._nearest_along(seen, key, done)
+        distance, nearest = self._nearest_along(seen, key, progress.done)
         if nearest is None or not self._clearly_nearer(distance, reading):
             self._better = None
             return key
@@ -118,7 +119,8 @@ class Choice:
             self._better, self._better_since = nearest, (seen.t, seen.east, seen.north)
             return key
         since, east, north = self._better_since
-        seconds, metres = SETTLED_AGAINST_PLAN if self.itinerary.planned_direction else SETTLED
+        under_way = self.itinerary.planned_direction and progress.begun
+        seconds, metres = SETTLED_AGAINST_PLAN if under_way else SETTLED
         if seen.t - since < seconds or math.hypot(seen.east - east, seen.north - north) < metres:
             return key
         self._better = None

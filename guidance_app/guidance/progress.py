@@ -59,6 +59,11 @@ class Progress:
         """Metres of the pass worked so far."""
         return math.fsum(high - low for low, high in self._stretches.get(key, ()))
 
+    @property
+    def begun(self) -> bool:
+        """Whether any pass has been worked on."""
+        return bool(self._stretches or self.done)
+
     def finish(self, key: int) -> None:
         """Counts a pass as done."""
         if key not in self.done:
