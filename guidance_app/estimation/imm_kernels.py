@@ -39,6 +39,9 @@ from guidance_app.model import FloatArray
 
 MODELS = 3
 
+SHARPEST = 1.0
+"""What a driver may do between two fixes, in m/s2, beyond what the models foresee: no fix is an outlier for that."""
+
 WITH_POSITION, REOPENED = range(2)
 """How the position is taken: through the gate, or believed whatever the distance."""
 
@@ -105,14 +108,15 @@ def _position(x: FloatArray, p: FloatArray, n: int, z: FloatArray) -> float:
 
 
 @numba.njit(cache=True)
-def _distance(x: FloatArray, p: FloatArray, n: int, z: FloatArray, innovation: FloatArray) -> float:
+def _distance(x: FloatArray, p: FloatArray, n: int, dt: float, z: FloatArray, innovation: FloatArray) -> float:
     """Chi-square distance of the fix from a predicted state; ``innovation`` becomes (east, north)."""
+    reach = 0.5 * SHARPEST * dt * dt
     he = np.zeros(n)
     hn = np.zeros(n)
     innovation[0] = z[Z_EAST] - antenna(x, z, EAST, he)
     innovation[1] = z[Z_NORTH] - antenna(x, z, NORTH, hn)
-    ee = z[CELL_EAST] ** 2 / 12.0 + z[WHITE] ** 2
-    nn = z[CELL_NORTH] ** 2 / 12.0 + z[WHITE] ** 2
+    ee = z[CELL_EAST] ** 2 / 12.0 + z[WHITE] ** 2 + reach**2
+    nn = z[CELL_NORTH] ** 2 / 12.0 + z[WHITE] ** 2 + reach**2
     en = 0.0
     for i in range(n):
         for j in range(n):
@@ -152,7 +156,7 @@ def imm_step(belief: Belief, n: int, dt: float, z: FloatArray, how: int, motion:
     for j in range(MODELS):
         predict(x_new[j], p_new[j], n, dt, models[j], common)
     innovation = np.zeros(2)
-    distance = _distance(x_new[MODELS - 1], p_new[MODELS - 1], n, z, innovation)
+    distance = _distance(x_new[MODELS - 1], p_new[MODELS - 1], n, dt, z, innovation)
     taken = how == REOPENED or (how == WITH_POSITION and distance <= z[GATE])
     log_weight = np.empty(MODELS)
     for j in range(MODELS):

@@ -24,6 +24,8 @@ DRIVING = 0.5
 AGREEING = math.radians(20)
 SENSOR_SD = math.radians(2.0)
 FASTEST = 20.0
+REVERSAL = math.radians(110)
+"""In the few seconds of being lost no tractor turns as far."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +36,12 @@ class Departure:
     heading_sd: float
     speed: float
     speed_sd: float
+
+    def as_before(self, heading: float) -> "Departure":
+        """The same way, driven backwards if it leads away from where the body pointed a moment ago."""
+        if abs(wrap_pi(self.heading - heading)) < REVERSAL:
+            return self
+        return Departure(wrap_pi(self.heading + math.pi), self.heading_sd, -self.speed, self.speed_sd)
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,6 +31,7 @@ from guidance_app.estimation.filter import AdaptiveSettings, Filter, FilterSetti
 from guidance_app.estimation.imm_kernels import (
     MODELS,
     REOPENED,
+    SHARPEST,
     WITH_POSITION,
     Belief,
     Motion,
@@ -60,12 +61,14 @@ __all__ = ["Adaptive"]
 
 LONGEST_GAP = 10.0
 DEAD_RECKONED = 5
+LOST_FIXES = 3
 STEP_FIXES = 4
 STEP_SCATTER = 0.15
 LONGEST_BACKING = 30.0
 HEADING_LOST = math.radians(35)
 """With a heading less certain than this the screen says that the direction is unknown."""
 STANDING_SPEED = 0.06
+FASTEST = 20.0
 GYRO_BIAS_SD = 0.01
 
 
@@ -81,19 +84,32 @@ class _State:
     n: int
     still: Stillness
     pose: Pose
-    rejected: tuple[tuple[float, float], ...] = ()
+    rejected: "tuple[_Refused, ...]" = ()
     backed: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
+class _Refused:
+    """A fix that the gate refused, and how far east and north of the expected place it was."""
+
+    z: Measurement
+    east: float
+    north: float
+
+
+@dataclass(frozen=True, slots=True)
 class _Before:
-    """Before the first heading: what has been seen, and what is kept from an earlier life."""
+    """Before the first heading: what has been seen, and what is kept from an earlier life.
+
+    ``pointed`` is the heading of a moment ago, which tells whether the way that is driven now is a way back.
+    """
 
     waiting: Waiting
     pose: Pose
     gyro_bias: float
     gyro_bias_sd: float
     still: Stillness
+    pointed: float | None = None
 
 
 class Adaptive:
@@ -113,7 +129,11 @@ class Adaptive:
         if isinstance(memory, _State) and z.t - memory.t > LONGEST_GAP:
             memory = _after_gap(memory, z)
         if isinstance(memory, _State):
-            self._memory = _advanced(memory, z, noise, self._settings.adaptive)
+            memory = _advanced(memory, z, noise, self._settings.adaptive)
+            if _is_lost(memory.rejected):
+                memory = _lost(memory)
+        if isinstance(memory, _State):
+            self._memory = memory
         else:
             self._memory = self._begun(memory, z, noise)
         return self._memory.pose
@@ -144,7 +164,9 @@ class Adaptive:
             bias, bias_sd = self._start.gyro_bias, 0.001
         departure = waiting.departure(noise.white)
         if departure is None:
-            return _Before(waiting, _unknown(z), bias, bias_sd, still)
+            return _Before(waiting, _unknown(z), bias, bias_sd, still, before.pointed if before else None)
+        if before is not None and before.pointed is not None and z.heading is None:
+            departure = departure.as_before(before.pointed)
         return _started(z, departure, noise, self._settings.adaptive, (bias, bias_sd), still)
 
 
@@ -213,9 +235,41 @@ def _after_gap(state: _State, z: Measurement) -> "_State | _Before":
         p[:, EAST, EAST] += away**2
         p[:, NORTH, NORTH] += away**2
         return replace(state, t=z.t - 1.0, belief=(x, p, w))
+    return replace(_lost(state), waiting=Waiting(), still=Stillness.of(z), pointed=None)
+
+
+def _is_lost(rejected: tuple[_Refused, ...]) -> bool:
+    """Whether it is the filter that is wrong, not the receiver.
+
+    So it is when refused fixes follow each other as a tractor moves, ever farther from what was expected; and when
+    there are more than may be dead-reckoned over.
+    """
+    if len(rejected) > DEAD_RECKONED:
+        return True
+    if len(rejected) < LOST_FIXES:
+        return False
+    one, two, three = rejected[-LOST_FIXES:]
+    first, second = two.z.t - one.z.t, three.z.t - two.z.t
+    bend = math.hypot(
+        (three.z.east - two.z.east) / second - (two.z.east - one.z.east) / first,
+        (three.z.north - two.z.north) / second - (two.z.north - one.z.north) / first,
+    )
+    speed = math.hypot(three.z.east - one.z.east, three.z.north - one.z.north) / (first + second)
+    drawn_away = math.hypot(three.east - one.east, three.north - one.north)
+    cell = max(three.z.cell or (DEFAULT_CELL,))
+    even = bend * min(first, second) < STEP_SCATTER + 2.0 * cell + 0.5 * SHARPEST * (first + second) ** 2
+    return even and speed < FASTEST and drawn_away > STEP_SCATTER + cell
+
+
+def _lost(state: _State) -> _Before:
+    """What remains when the filter is lost: the gyro's bias, and the refused fixes, which tell where it really is."""
+    x, p, w = state.belief
     bias = float(w @ x[:, GYRO_BIAS])
     bias_sd = math.sqrt(float(w @ p[:, GYRO_BIAS, GYRO_BIAS])) + 1e-3
-    return _Before(Waiting(), state.pose, bias, bias_sd, Stillness.of(z))
+    waiting = Waiting()
+    for refused in state.rejected[:-1]:
+        waiting = waiting.to(refused.z)
+    return _Before(waiting, state.pose, bias, bias_sd, state.still, state.pose.heading)
 
 
 def _advanced(state: _State, z: Measurement, noise: ReceiverNoise, settings: AdaptiveSettings) -> _State:
@@ -227,7 +281,7 @@ def _advanced(state: _State, z: Measurement, noise: ReceiverNoise, settings: Ada
     models = _models(settings, z)
     epoch = readings(z, noise, settings, bound)
     motion = (_model_rows(models), _moves(models, round(dt, 4)), common_noise(z, noise, settings))
-    belief, rejected = _corrected(state, dt, epoch, motion)
+    belief, rejected = _corrected(state, z, dt, epoch, motion)
     belief, backed = _turned_round(belief, z, state.backed, dt)
     pose = _pose(z, belief, state.n)
     standing = bound is not None and abs(pose.speed) < STANDING_SPEED
@@ -236,19 +290,19 @@ def _advanced(state: _State, z: Measurement, noise: ReceiverNoise, settings: Ada
 
 
 def _corrected(
-    state: _State, dt: float, epoch: FloatArray, motion: Motion
-) -> tuple[Belief, tuple[tuple[float, float], ...]]:
-    """The new belief, and the innovations of the fixes rejected in a row until now."""
+    state: _State, z: Measurement, dt: float, epoch: FloatArray, motion: Motion
+) -> tuple[Belief, tuple[_Refused, ...]]:
+    """The new belief, and the fixes rejected in a row until now."""
     belief, report = imm_step(state.belief, state.n, dt, epoch, WITH_POSITION, motion)
     if report[0] == 1.0:
         return belief, ()
-    rejected = (*state.rejected, (float(report[2]), float(report[3])))
+    rejected = (*state.rejected, _Refused(z, float(report[2]), float(report[3])))
     stepped = _step_of(rejected)
     if stepped is not None and state.n == STATES:
         shifted, report = imm_step(_shifted(state.belief, stepped), state.n, dt, epoch, WITH_POSITION, motion)
         if report[0] == 1.0:
             return shifted, ()
-    if stepped is not None or len(rejected) > DEAD_RECKONED:
+    if stepped is not None:
         belief, _ = imm_step(state.belief, state.n, dt, epoch, REOPENED, motion)
         return belief, ()
     return belief, rejected
@@ -281,14 +335,14 @@ def _with_drift(state: _State, z: Measurement, noise: ReceiverNoise) -> _State:
     return replace(state, belief=(x, p, w), n=n)
 
 
-def _step_of(rejected: tuple[tuple[float, float], ...]) -> tuple[float, float] | None:
+def _step_of(rejected: tuple[_Refused, ...]) -> tuple[float, float] | None:
     """The receiver's step, if the last four rejected fixes agree on one."""
     last = rejected[-STEP_FIXES:]
     if len(last) < STEP_FIXES:
         return None
-    east = sum(e for e, _ in last) / STEP_FIXES
-    north = sum(n for _, n in last) / STEP_FIXES
-    agree = all(math.hypot(e - east, n - north) < STEP_SCATTER for e, n in last)
+    east = sum(fix.east for fix in last) / STEP_FIXES
+    north = sum(fix.north for fix in last) / STEP_FIXES
+    agree = all(math.hypot(fix.east - east, fix.north - north) < STEP_SCATTER for fix in last)
     return (east, north) if agree else None
 
 
