@@ -126,20 +126,38 @@ def _search(arguments: argparse.Namespace) -> Search:
 def _watched(finding: Iterator[Found]) -> tuple[Found | None, bool]:
     """The last result and whether Ctrl-C ended the search; a progress bar runs on stderr meanwhile."""
     found, stopped = None, False
+    bar = _Bar()
     try:
         for found in finding:
-            _show(found)
+            bar.show(found)
     except KeyboardInterrupt:
         stopped = True
-    print(file=sys.stderr)
+    bar.end()
     return found, stopped
 
 
-def _show(found: Found) -> None:
-    share = min(1.0, found.evaluations / max(found.of, 1))
-    bar = "#" * round(BAR * share)
-    text = f"[{bar:<{BAR}}] {share:4.0%}  {found.evaluations:,} evaluations, best {100 * found.rms:.3f} cm"
-    print(f"\r{text}", end="", file=sys.stderr, flush=True)
+class _Bar:
+    """The progress on stderr: one line that is drawn over on a terminal, else a new line every ten percent."""
+
+    def __init__(self) -> None:
+        self._over = sys.stderr.isatty()
+        self._last = -1
+
+    def show(self, found: Found) -> None:
+        """Says how far it is, when that has changed enough."""
+        percent = min(100, 100 * found.evaluations // max(found.of, 1))
+        shown = percent if self._over else percent // 10 * 10
+        if shown == self._last:
+            return
+        self._last = shown
+        bar = "#" * (BAR * percent // 100)
+        text = f"[{bar:<{BAR}}] {percent:3} %  {found.evaluations:,} evaluations, best {100 * found.rms:.3f} cm"
+        print(f"\r{text}" if self._over else text, end="" if self._over else "\n", file=sys.stderr, flush=True)
+
+    def end(self) -> None:
+        """Leaves the line."""
+        if self._over and self._last >= 0:
+            print(file=sys.stderr)
 
 
 def _report(objective: Objective, found: Found, arguments: argparse.Namespace) -> Iterator[str]:
@@ -191,11 +209,10 @@ def _validate(objective: Objective, search: Search) -> None:
         return
     try:
         for check in cross_validation(objective, search):
-            print(f"\rcross-validation, {check.folds} parts left out", end="", file=sys.stderr, flush=True)
+            print(f"cross-validation: {check.folds} parts left out in turn", file=sys.stderr, flush=True)
     except KeyboardInterrupt:
-        print("\ncross-validation stopped", file=sys.stderr)
+        print("cross-validation stopped; the result above stands", file=sys.stderr)
         return
-    print(file=sys.stderr)
     print(
         f"cross-validation over {check.folds} parts: {100 * check.tuned:.2f} cm on what the tuning did not see"
         f"   (paper's matrices: {100 * check.default:.2f} cm)"

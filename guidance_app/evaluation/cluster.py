@@ -39,7 +39,7 @@ def cluster_search(objective: Objective, chunks: Sequence[Chunk], address: str) 
         msg = f"no Dask scheduler answers at {address}: {error}"
         raise ClusterError(msg) from error
     with client:
-        asked: Any = distributed.as_completed(raise_errors=False)  # type: ignore[no-untyped-call]  # no types
+        asked: Any = distributed.as_completed(loop=client.loop, raise_errors=False)  # type: ignore[no-untyped-call]  # no types
         yield from best_so_far(objective, chunks, _arriving(client, asked, objective, chunks))
 
 

@@ -6,7 +6,7 @@ being good on straight lines alone. What is reported uses other seeds than what 
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -17,7 +17,7 @@ from guidance_app.evaluation.metrics import Score, errors_of, geometric_mean, po
 from guidance_app.evaluation.parallel import Spread
 from guidance_app.evaluation.peers import PeerMissingError, constant_velocity
 from guidance_app.evaluation.rows import Goal, Row, at_most, between
-from guidance_app.evaluation.scenarios import SCENARIOS, UNSEEN, Purpose, generator, truth_of
+from guidance_app.evaluation.scenarios import RATE_HZ, SCENARIOS, UNSEEN, Purpose, generator, truth_of
 from guidance_app.evaluation.signals import Sensors, outliers, record
 from guidance_app.evaluation.smoothed import smooth_recording
 from guidance_app.evaluation.tracks import Recording, Track
@@ -28,7 +28,7 @@ __all__ = ["METHODS", "Case", "CaseResult", "Method", "run_case", "scenario_rows
 CM = 100.0
 OUTLIER_SHARE = 0.01
 SCATTER = 0.02
-"""Standard deviation in metres of the scatter under the outliers."""
+"""Standard deviation in metres of the scatter under the outliers; the receiver says it (GST)."""
 
 
 POSITION_ONLY = Sensors()
@@ -60,7 +60,10 @@ METHODS: Mapping[str, Method] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One method on some seeds of one scenario. ``outlier_share`` spoils so many fixes by 1 to 5 m."""
+    """One method on some seeds of one scenario.
+
+    ``outlier_share`` spoils so many fixes by 1 to 5 m; ``rate`` is the receiver's, in Hz.
+    """
 
     method: str
     scenario: str
@@ -68,6 +71,7 @@ class Case:
     purpose: Purpose = Purpose.REPORT
     outlier_share: float = 0.0
     quality: FixQuality = FixQuality.RTK_FIXED
+    rate: float = RATE_HZ
     settings: FilterSettings | None = None
 
 
@@ -82,13 +86,13 @@ class CaseResult:
 def recording_of(case: Case, seed: int) -> tuple[Track, Recording]:
     """The truth and what the receiver says of it, the same for every method."""
     random = generator(case.purpose, case.scenario, seed)
-    truth = truth_of(case.scenario, random)
+    truth = truth_of(case.scenario, random, case.rate)
     error = None
     if case.outlier_share > 0:
         scatter = random.normal(0.0, SCATTER, (len(truth), 2))
         error = scatter + outliers(len(truth), case.outlier_share, random)
-    sensors = METHODS[case.method].sensors
-    return truth, record(truth, random, sensors, error=error, quality=case.quality)
+    recording = record(truth, random, METHODS[case.method].sensors, error=error, quality=case.quality)
+    return truth, recording if error is None else replace(recording, sigma=(SCATTER, SCATTER))
 
 
 def estimator_named(name: str, settings: FilterSettings | None) -> Callable[[Recording], Track]:

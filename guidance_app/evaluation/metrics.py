@@ -181,7 +181,8 @@ def _matched(estimate: Track, truth: Track) -> tuple[Track, Track]:
     after = np.clip(np.searchsorted(truth.t, estimate.t), 1, len(truth) - 1)
     before = after - 1
     inside = (estimate.t >= truth.t[0]) & (estimate.t <= truth.t[-1])
-    kept = inside & (truth.t[after] - truth.t[before] <= MAX_GAP)
+    near = truth.t[after] - truth.t[before] <= MAX_GAP
+    kept = inside & (near | (truth.t[after] == estimate.t) | (truth.t[before] == estimate.t))
     before, after = before[kept], after[kept]
     span = truth.t[after] - truth.t[before]
     share = (estimate.t[kept] - truth.t[before]) / np.where(span > 0, span, 1.0)

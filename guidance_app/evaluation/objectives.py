@@ -9,7 +9,7 @@ A filter that follows the rounding points the wrong way, one that is too stiff l
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +30,8 @@ HORIZON = 1.0
 """A recorded estimate is judged by where it says that the tractor is after so many seconds."""
 LONGEST_GAP = 2.0
 SHORTEST_PIECE = 15.0
+SHARE = 60.0
+"""Seconds of a piece that are kept together in the cross-validation."""
 SLOW = 0.3
 LEAST_DISTANCE = 100.0
 LEAST_SECONDS = 60.0
@@ -155,9 +157,9 @@ def _pieces(recording: Recording) -> list[FloatArray]:
     """A recorded drive without its gaps, each piece judged by the fix that came a second later."""
     if len(recording) < 2:
         return []
-    cuts = np.flatnonzero(np.diff(recording.t) > LONGEST_GAP) + 1
+    gaps = np.flatnonzero(np.diff(recording.t) > LONGEST_GAP) + 1
     tables = []
-    for rows in np.split(np.arange(len(recording)), cuts):
+    for rows in _shares(np.split(np.arange(len(recording)), gaps), recording.t):
         t = recording.t[rows]
         if t[-1] - t[0] < SHORTEST_PIECE or len(rows) < 5:
             continue
@@ -173,6 +175,13 @@ def _pieces(recording: Recording) -> list[FloatArray]:
         table[:, 8] = np.where(known & settled & (table[:, 4] > SLOW), 1.0, 0.0)
         tables.append(table)
     return tables
+
+
+def _shares(stretches: Sequence[IntArray], t: FloatArray) -> Iterator[IntArray]:
+    """The stretches cut into shares of about a minute, so that some can be kept from the tuning."""
+    for rows in stretches:
+        count = max(1, int((t[rows[-1]] - t[rows[0]]) // SHARE))
+        yield from np.array_split(rows, count)
 
 
 def _recorded_velocity(recording: Recording, rows: IntArray, t: FloatArray) -> FloatArray:

@@ -19,7 +19,7 @@ import numpy as np
 from guidance_app.evaluation.tracks import Track
 from guidance_app.model import FloatArray
 
-__all__ = ["SCENARIOS", "UNSEEN", "Purpose", "drive", "generator", "straight_line", "truth_of"]
+__all__ = ["RATE_HZ", "SCENARIOS", "UNSEEN", "Purpose", "drive", "generator", "straight_line", "truth_of"]
 
 KMH = 1 / 3.6
 RATE_HZ = 5.0
@@ -87,7 +87,7 @@ def straight_line(
     )
 
 
-def truth_of(name: str, random: np.random.Generator) -> Track:
+def truth_of(name: str, random: np.random.Generator, rate: float = RATE_HZ) -> Track:
     """The true path of a scenario, its start, direction and side drawn. ``KeyError`` for an unknown name."""
     recipe = SCENARIOS[name] if name in SCENARIOS else UNSEEN[name]
     heading = random.uniform(-math.pi, math.pi)
@@ -99,6 +99,7 @@ def truth_of(name: str, random: np.random.Generator) -> Track:
         recipe.duration,
         heading=heading if recipe.heading is None else recipe.heading,
         start=start,
+        rate=rate,
     )
 
 
