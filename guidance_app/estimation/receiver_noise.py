@@ -27,10 +27,10 @@ class ReceiverNoise:
 _BY_QUALITY = {
     FixQuality.NONE: ReceiverNoise(1.0, 5.0, 60.0),
     FixQuality.AUTONOMOUS: ReceiverNoise(0.05, 1.0, 300.0),
-    FixQuality.DGPS: ReceiverNoise(0.03, 0.3, 150.0),
-    FixQuality.PPS: ReceiverNoise(0.03, 0.3, 150.0),
+    FixQuality.DGPS: ReceiverNoise(0.03, 0.18, 70.0),
+    FixQuality.PPS: ReceiverNoise(0.03, 0.18, 70.0),
     FixQuality.RTK_FIXED: ReceiverNoise(0.008, 0.0, 1.0),
-    FixQuality.RTK_FLOAT: ReceiverNoise(0.03, 0.2, 100.0),
+    FixQuality.RTK_FLOAT: ReceiverNoise(0.03, 0.12, 70.0),
     FixQuality.DEAD_RECKONING: ReceiverNoise(0.3, 3.0, 60.0),
     FixQuality.MANUAL: ReceiverNoise(0.01, 0.0, 1.0),
     FixQuality.SIMULATED: ReceiverNoise(0.008, 0.0, 1.0),
