@@ -236,6 +236,8 @@ def move_sites(z: FloatArray, smooth: FloatArray, spreads: FloatArray, sites: Fl
     h = np.zeros(n)
     column = np.empty(n)
     for k in range(z.shape[0]):
+        if z[k, WHITE] == 0.0:  # an epoch put into a gap: there is no fix
+            continue
         out = False
         for axis in range(2):
             cell = z[k, CELL_EAST + axis]
