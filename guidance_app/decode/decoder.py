@@ -6,9 +6,10 @@ before held (``habits``), or when 0.3 of the epoch interval has passed in silenc
 Sentences without a checksum are read only in a stream that has never carried one (they are counted as
 ``unchecked``); from the first right checksum on, a sentence that lacks it is rejected.
 
-A reading of attitude that comes within an open epoch, once, is part of its fix. Every other one is an ``Attitude`` at
-once: between epochs, of a sensor with a rate of its own, or with a time that is not the epoch's. One that came less
-than 0.3 of an interval before an epoch opened, or bears the epoch's time, is also lent to its fix.
+A reading of attitude that comes within an open epoch, once, is part of its fix, or an ``Attitude`` when the epoch
+gives none. Every other one is an ``Attitude`` at once: between epochs, of a sensor with a rate of its own, or with a
+time that is not the epoch's. One that came less than 0.3 of an interval before an epoch opened, or bears the epoch's
+time, is also lent to its fix.
 
 ``Fix.arrival`` is when the first sentence of its epoch came, however the epoch was closed, so the same bytes with the
 same times always give the same observations.
@@ -247,6 +248,7 @@ class Decoder:
             recent = arrival - came < QUIET * self.interval
             if sentence.time == time if sentence.time is not None else recent:
                 epoch.sentences[kind] = sentence
+                epoch.lent.add(kind)
         self._early.clear()
         self._epoch = epoch
         return epoch
@@ -272,14 +274,18 @@ class Decoder:
             return
         epoch.closed = True
         self._closed_time = epoch.time
+        position = epoch.position()
         if epoch.says_no_fix():
             out.append(NoFix(epoch.arrival, epoch.t, "no fix"))
             if epoch.t is not None:
                 self._clock.believe(epoch.t)
+        elif position is not None and self._close_with(epoch, position, out):
             return
-        position = epoch.position()
-        if position is None:
-            return
+        for sentence in epoch.attitudes():
+            self._tell_attitude(sentence, epoch.heard, out)
+
+    def _close_with(self, epoch: Epoch, position: Sentence, out: list[Observation]) -> bool:
+        """Says the fix of an epoch that has a position, or why there is none."""
         quality = epoch.quality_of(position)
         usual = self._usual.accepts(position)
         if epoch.t is None:
@@ -289,7 +295,8 @@ class Decoder:
         elif not usual:
             self._reject(epoch.arrival, "", "finer position missing", out)
         else:
-            self._judge(self._fix_of(epoch, epoch.t, position, quality), out)
+            return self._judge(self._fix_of(epoch, epoch.t, position, quality), out)
+        return False
 
     def _fix_of(self, epoch: Epoch, t: float, position: Sentence, quality: FixQuality) -> Fix:
         assert position.latitude_deg is not None  # noqa: S101 - Epoch.position gives only sentences that have one
@@ -320,21 +327,22 @@ class Decoder:
             second_antenna_deg=epoch.second_antenna_deg(position),
         )
 
-    def _judge(self, fix: Fix, out: list[Observation]) -> None:
-        """Lets a fix out when it is plausible, without its motion when only that is not."""
+    def _judge(self, fix: Fix, out: list[Observation]) -> bool:
+        """Lets a fix out when it is plausible, without its motion when only that is not; whether it did."""
         if fix.speed is not None and not self._plausibility.believes_speed(fix.t, fix.speed):
             self._reject(fix.arrival, "", "implausible speed", out)
             fix = replace(fix, speed=None, course=None)
         reason = self._plausibility.doubt(Place(fix.t, fix.latitude_deg, fix.longitude_deg, fix.speed))
         if reason is not None:
             self._reject(fix.arrival, "", reason, out)
-            return
+            return False
         if self._last_fix_t is not None and 0.0 < fix.t - self._last_fix_t <= LONGEST_INTERVAL:
             self._intervals = (*self._intervals[1 - INTERVALS_KEPT :], fix.t - self._last_fix_t)
             self.interval = sorted(self._intervals)[len(self._intervals) // 2]
         self._last_fix_t = fix.t
         self._clock.believe(fix.t)
         out.append(fix)
+        return True
 
     def _reject(self, arrival: float, line: str, reason: str, out: list[Observation]) -> None:
         self._rejected[reason] += 1

@@ -7,7 +7,7 @@ A sentence of the first five that says "no fix" outweighs an RMC that says valid
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from guidance_app.angles import wrap_2pi
 from guidance_app.decode.plausibility import metres_between
@@ -21,6 +21,7 @@ POSITION_KINDS = ("GGA", "GNS", "KSXT", "PAOGI", "PANDA", "RMC", "GLL")
 
 STRONG_KINDS = POSITION_KINDS[:5]
 SECOND_GGA = "GGA of the second antenna"
+_NOT_ATTITUDE = frozenset((*POSITION_KINDS, SECOND_GGA, "GST", "VTG", "GSA"))
 LONGEST_BASELINE = 20.0
 """Two antennas of one machine are nearer than this, in metres."""
 
@@ -30,7 +31,8 @@ class Epoch:
     """What has come of one epoch so far. ``time`` is the second of the day, ``t`` the continuous time.
 
     ``arrival`` is when its first sentence came, ``heard`` its last. ``expected`` are the kinds it should hold.
-    Once ``closed`` it only waits for the sentences that come too late.
+    Once ``closed`` it only waits for the sentences that come too late. Kinds in ``lent`` came before the epoch and
+    have been told already.
     """
 
     time: float | None
@@ -40,10 +42,11 @@ class Epoch:
     expected: frozenset[str]
     closed: bool = False
     sentences: dict[str, Sentence] = field(default_factory=dict)
+    lent: set[str] = field(default_factory=set)
 
     def fork(self) -> "Epoch":
         """An independent copy."""
-        return Epoch(self.time, self.t, self.arrival, self.heard, self.expected, self.closed, self.sentences.copy())
+        return replace(self, sentences=self.sentences.copy(), lent=self.lent.copy())
 
     def is_complete(self) -> bool:
         """Whether everything has come that usually comes, and with it something about the position."""
@@ -67,6 +70,12 @@ class Epoch:
             if sentence is not None and sentence.has_position:
                 return sentence
         return None
+
+    def attitudes(self) -> list[Sentence]:
+        """The readings of attitude that belong to this epoch alone."""
+        return [
+            sentence for kind, sentence in self.sentences.items() if kind not in self.lent and kind not in _NOT_ATTITUDE
+        ]
 
     def quality_of(self, position: Sentence) -> FixQuality | None:
         """The fix's quality; None when nobody vouches for it."""

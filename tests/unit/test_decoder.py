@@ -273,6 +273,11 @@ def test_a_reading_just_before_its_epoch_is_lent_to_the_fix() -> None:
     assert fix.heading == pytest.approx(math.radians(33.0))
 
 
+def test_a_reading_of_an_epoch_without_a_fix_is_told_all_the_same() -> None:
+    observations = _at_once(gga(NOON, quality="0") + hdt(33.0) + gga(NOON + 1, quality="0"))
+    assert [type(one) for one in observations] == [NoFix, Attitude, NoFix]
+
+
 def test_a_reading_long_before_an_epoch_is_not_lent() -> None:
     decoder = Decoder()
     decoder.feed(Chunk(0.5, hdt(33.0)))
