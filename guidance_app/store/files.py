@@ -180,13 +180,13 @@ class FolderLock:
             self.root.mkdir(parents=True, exist_ok=True)
             descriptor = os.open(self.root / LOCK_NAME, os.O_RDWR | os.O_CREAT, 0o644)
         except OSError as error:
-            msg = f"the data folder {self.root} cannot be written: {why(error)}; choose another one with --data"
+            msg = f"the data folder {self.root} cannot be written: {why(error)}; choose another folder"
             raise StoreError(msg) from error
         try:
             _lock(descriptor)
         except OSError as error:
             os.close(descriptor)
-            msg = f"the data folder {self.root} cannot be locked: {why(error)}; choose another one with --data"
+            msg = f"the data folder {self.root} cannot be locked: {why(error)}; choose another folder"
             raise StoreError(msg) from error
         return descriptor
 

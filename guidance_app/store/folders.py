@@ -1,19 +1,22 @@
 """Where the data folder is, and the embedded sample that the program brings along."""
 
+import json
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
 from platformdirs import user_data_dir
 
-from guidance_app.store.files import StoreError, why
+from guidance_app.store.files import StoreError, read_bounded, why
 
-__all__ = ["SAMPLE_RECORDING", "copy_sample", "data_folder", "sample_folder"]
+__all__ = ["SAMPLE_RECORDING", "copy_sample", "data_folder", "sample_folder", "simulated_notice"]
 
 PACKAGE = Path(__file__).resolve().parent.parent
 ENVIRONMENT_NAME = "GUIDANCE_DATA"
 SAMPLE_RECORDING = Path("recordings") / "sample"
 """The embedded recording's folder inside a data folder."""
+SESSION_NAME = "session.json"
+"""What is known of a recording, beside its log."""
 _SAMPLE = (
     Path("fields") / "sample-field",
     Path("tractors") / "sample-tractor.json",
@@ -49,6 +52,18 @@ def sample_folder() -> Path:
             return folder
     msg = f"the embedded sample is missing beside {PACKAGE}; install the program again"
     raise StoreError(msg)
+
+
+def simulated_notice(log: Path) -> str | None:
+    """What a screen must say beside this log, because its ``session.json`` says that it is simulated; else None."""
+    try:
+        members = json.loads(read_bounded(log.with_name(SESSION_NAME)))
+    except (OSError, ValueError, RecursionError, StoreError):
+        return None  # most logs have no such file beside them, and a broken one cannot make a log simulated
+    if not isinstance(members, dict) or members.get("simulated") is not True:
+        return None
+    notice = members.get("notice")
+    return notice if isinstance(notice, str) and notice else "This recording is simulated."
 
 
 def copy_sample(to: Path) -> Path:

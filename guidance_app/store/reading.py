@@ -33,8 +33,6 @@ PATTERNS: Mapping[type[Document], str] = MappingProxyType(
 BROKEN = ".broken"
 """What is added to the name of a file that could not be read."""
 
-_Mark = tuple[int, int, int]
-
 
 @dataclass(frozen=True, slots=True)
 class Stored(Generic[D]):
@@ -69,14 +67,17 @@ def home_of(document: Document) -> str:
 
 
 class Reader:
-    """Reads the documents under ``root`` and remembers those whose files have not changed."""
+    """Reads the documents under ``root``; what has the bytes that it had is not decoded again.
+
+    The bytes are read each time: two files written within a tick of the disk's clock may share time, size and inode.
+    """
 
     def __init__(self, lock: FolderLock, migrations: Mapping[tuple[str, int], Migration]) -> None:
         self.root = lock.root
         self._lock = lock
         self._migrations = migrations
         self._problems: dict[Path, Problem] = {}
-        self._seen: dict[Path, tuple[_Mark, Stored[Document]]] = {}
+        self._seen: dict[Path, Stored[Document]] = {}
 
     def problems(self) -> tuple[Problem, ...]:
         """What is wrong now, after a look at every document."""
@@ -134,14 +135,13 @@ class Reader:
         return self._at_home(stored)
 
     def _unchanged_or_new(self, path: Path, kind: type[D]) -> Stored[D]:
-        stat = path.stat()
-        mark = (stat.st_mtime_ns, stat.st_size, stat.st_ino)
-        seen = self._seen.get(path)
-        if seen is not None and seen[0] == mark:
-            return cast("Stored[D]", seen[1])  # a path belongs to one kind
         content = read_bounded(path)
-        stored = Stored(decoded(content, kind, self._migrations), revision_of(content), path)
-        self._seen[path] = (mark, cast("Stored[Document]", stored))
+        revision = revision_of(content)
+        seen = self._seen.get(path)
+        if seen is not None and seen.revision == revision:
+            return cast("Stored[D]", seen)  # a path belongs to one kind
+        stored = Stored(decoded(content, kind, self._migrations), revision, path)
+        self._seen[path] = cast("Stored[Document]", stored)
         return stored
 
     def _at_home(self, stored: Stored[D]) -> Stored[D]:

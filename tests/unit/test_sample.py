@@ -17,7 +17,16 @@ from guidance_app.simulation.job import SimulatedEpoch
 from guidance_app.simulation.sample import sample_job
 from guidance_app.sources.file import load_log
 from guidance_app.sources.simulated import sample_drive
-from guidance_app.store import SAMPLE_RECORDING, Store, StoreError, copy_sample, data_folder, load_job, sample_folder
+from guidance_app.store import (
+    SAMPLE_RECORDING,
+    Store,
+    StoreError,
+    copy_sample,
+    data_folder,
+    load_job,
+    sample_folder,
+    simulated_notice,
+)
 
 EIGHT_MINUTES, FIFTEEN_MINUTES = 480.0, 900.0
 MEGABYTES_1_5 = 1_500_000
@@ -63,6 +72,16 @@ def test_the_recording_says_that_it_is_simulated() -> None:
     session = json.loads((sample_folder() / SAMPLE_RECORDING / "session.json").read_text())
     assert session["simulated"] is True
     assert (sample_folder() / LOG).read_bytes().startswith(b"# This log is SIMULATED")
+    assert simulated_notice(sample_folder() / LOG) == session["notice"]
+
+
+@pytest.mark.parametrize(
+    "content", [None, "", "[]", "{}", '{"simulated": false}', '{"simulated": "true"}', "[" * 99_999]
+)
+def test_a_recording_that_does_not_say_so_is_not_called_simulated(tmp_path: Path, content: str | None) -> None:
+    if content is not None:
+        (tmp_path / "session.json").write_text(content)
+    assert simulated_notice(tmp_path / "receiver.nmea") is None
 
 
 def test_the_recording_is_a_small_job_with_start_loss_and_end() -> None:
