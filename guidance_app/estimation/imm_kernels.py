@@ -42,8 +42,8 @@ MODELS = 3
 SHARPEST = 1.0
 """What a driver may do between two fixes, in m/s2, beyond what the models foresee: no fix is an outlier for that."""
 
-WITH_POSITION, REOPENED = range(2)
-"""How the position is taken: through the gate, or believed whatever the distance."""
+WITH_POSITION, WITHOUT_POSITION, REOPENED = range(3)
+"""How the position is taken: through the gate, not at all, or believed whatever the distance."""
 
 Belief = tuple[FloatArray, FloatArray, FloatArray]
 Motion = tuple[FloatArray, FloatArray, FloatArray]

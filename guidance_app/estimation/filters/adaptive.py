@@ -12,7 +12,8 @@ a line as well: one model alone trades the two, 4.4 cm against 3.0 in the mean o
   what is believed of a fix, never the state.
 * **Gate**: a fix beyond chi-square 15 of the most mobile model is dead-reckoned over, at most five in a row. Four that
   agree within 15 cm are a step of the receiver's: it goes into the drift, or, with RTK, is followed.
-* **Standing**: speed is held at zero (ZUPT), which holds the heading and lets the gyro's bias be learnt (ZARU).
+* **Standing**: speed is held at zero (ZUPT), which holds the heading and lets the gyro's bias be learnt (ZARU). The
+  same fix again tells a standing tractor nothing new; taken as news it would shrink the ellipse below the truth.
 * **Reverse**: the heading stays and the speed goes negative. Thirty metres of it without a heading sensor are taken for
   a start in the wrong direction, and turned round.
 
@@ -33,6 +34,7 @@ from guidance_app.estimation.imm_kernels import (
     REOPENED,
     SHARPEST,
     WITH_POSITION,
+    WITHOUT_POSITION,
     Belief,
     Motion,
     combined,
@@ -281,7 +283,12 @@ def _advanced(state: _State, z: Measurement, noise: ReceiverNoise, settings: Ada
     models = _models(settings, z)
     epoch = readings(z, noise, settings, bound)
     motion = (_model_rows(models), _moves(models, round(dt, 4)), common_noise(z, noise, settings))
-    belief, rejected = _corrected(state, z, dt, epoch, motion)
+    nothing_new = bound is not None and (still.east, still.north) == (z.east, z.north)
+    if nothing_new:
+        belief, _ = imm_step(state.belief, state.n, dt, epoch, WITHOUT_POSITION, motion)
+        rejected = state.rejected
+    else:
+        belief, rejected = _corrected(state, z, dt, epoch, motion)
     belief, backed = _turned_round(belief, z, state.backed, dt)
     pose = _pose(z, belief, state.n)
     standing = bound is not None and abs(pose.speed) < STANDING_SPEED
