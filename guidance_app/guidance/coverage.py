@@ -250,6 +250,11 @@ class Coverage:
         )
 
     @property
+    def tiles(self) -> int:
+        """How many tiles of ground are remembered."""
+        return self._grid.tiles
+
+    @property
     def worked(self) -> Trail:
         """The strips to draw."""
         return self._trail.trail

@@ -141,7 +141,7 @@ class StripTrail:
     """Worked ground as strips, for drawing.
 
     A ``Trail`` has one open piece: that of the widest run. Where sections are off in the middle of an implement, the
-    other runs are sealed every few rows and so appear at most 3 m behind it.
+    other runs are sealed every few rows and so appear a few metres behind it.
     """
 
     def __init__(self) -> None:
