@@ -107,6 +107,14 @@ def test_a_field_replaced_by_anything_is_read_or_refused_with_a_reason(
         ("GPRMC,120000,B,4807.038,N,01131.000,E,5.0,90.0,020120,,,A", "bad field in RMC"),
         ("GNGNS,112257.00,3844.24011,N,00908.43828,W,AX,14,0.5,104.2,50.3,,", "bad field in GNS"),
         ("GPHDT,274.07x,T", "bad field in HDT"),
+        ("GPVTG,90.0,M,,M,5.0,N,,K", "bad field in VTG"),
+        ("GPGSA,A,4,17,02,,,,,,,,,,,1.48,0.76,1.27", "bad field in GSA"),
+        ("GNTHS,244.28,Q", "bad field in THS"),
+        ("KSXT,20211016083433.00,116.3,39.9,49.4,223.57,-11.32,330.19,0.024,,7,3,28,27", "bad field in KSXT"),
+        ("KSXT,2021101608,116.3,39.9,49.4,223.57,-11.32,330.19,0.024,,1,3,28,27", "bad field in KSXT"),
+        ("KSXT,20211316083433.00,116.3,39.9,49.4,223.57,-11.32,330.19,0.024,,1,3,28,27", "bad field in KSXT"),
+        ("KSXT,20211016083433.00,116.3,99.9,49.4,223.57,-11.32,330.19,0.024,,1,3,28,27", "bad field in KSXT"),
+        ("KSXT,20211016083433.00,,39.9,49.4,223.57,-11.32,330.19,0.024,,1,3,28,27", "bad field in KSXT"),
         ("GPXYZ,1,2,3", "unknown sentence"),
         ("PTNL,GGK,1,2,3", "unknown sentence"),
         ("PASHR,POS,0,03,183530.00,2037.76012,N,08704.07373,W,058.48", "unknown sentence"),
@@ -134,6 +142,25 @@ def test_what_is_not_exactly_right_is_refused_with_its_reason(body: str, reason:
 def test_a_damaged_line_is_refused_with_its_reason(line: str, reason: str) -> None:
     with pytest.raises(DecodeError, match=f"^{reason}$"):
         read_line(line)
+
+
+def test_a_ksxt_without_position_and_time_says_so() -> None:
+    read = read_line(_line("KSXT,,,,,,,,,,0,0,0,0"))
+    assert (read.time, read.date, read.latitude_deg, read.valid) == (None, None, None, False)
+
+
+@pytest.mark.parametrize("status", ["UNKNOWN", "FREEWHEELING"])
+def test_a_unicore_clock_that_is_not_set_gives_no_time(status: str) -> None:
+    line = f"#UNIHEADINGA,97,GPS,{status},2190,365174000,0,0,18,12;SOL_COMPUTED,NARROW_INT,1.0,90.0,10.0"
+    assert read_line(line).time is None
+
+
+def test_a_unicore_clock_that_is_no_number_is_refused() -> None:
+    line = "#UNIHEADINGA,97,GPS,FINE,2190,36517x000,0,0,18,12;SOL_COMPUTED,NARROW_INT,1.0,90.0,10.0"
+    with pytest.raises(DecodeError, match="bad field in UNIHEADINGA"):
+        read_line(line)
+    with pytest.raises(DecodeError, match="too short"):
+        read_line("#UNIHEADINGA,97,GPS,FINE")
 
 
 @given(st.text(max_size=200))
