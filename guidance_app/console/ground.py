@@ -12,7 +12,7 @@ from guidance_app.console.growing import Ribbon, TrackLine
 from guidance_app.console.machine import backdrop, flag
 from guidance_app.documents import Job
 from guidance_app.geodesy import FieldFrame
-from guidance_app.model import Guidance, Snapshot
+from guidance_app.model import FloatArray, Guidance, Snapshot
 from guidance_app.view.camera import Extent
 from guidance_app.view.colours import DAY, NIGHT, Palette, Rgb, flat_source, lit_source
 from guidance_app.view.field import Mesh, everything, exclusion_mesh, ground_mesh, mainland_strokes, ring_strokes
@@ -27,7 +27,8 @@ AMBIENT_SHARE = 0.45
 
 SUN = (-450.0, 450.0, 770.0)
 BACKDROP_RADIUS = 2600.0
-START_FLAG: Rgb = (44, 150, 84)
+Z_GRID = -0.06
+START_FLAG: Rgb = (56, 190, 96)
 ENTRANCE_FLAG: Rgb = (206, 160, 44)
 
 
@@ -40,6 +41,7 @@ class Ground:
         self._palette = palette
         self._version: tuple[int, int] | None = None
         self._passes_key: object = None
+        self._seen: Snapshot | None = None
         self._generation = 0
         self._latest: Snapshot | None = None
         self.extent: Extent | None = None
@@ -78,7 +80,7 @@ class Ground:
         self._light()
         self.worked.recolour(lit_source(palette.worked, palette.light))
         self.track.recolour(flat_source(palette.track))
-        self._version, self._passes_key = None, None
+        self._version = self._passes_key = self._seen = None
         if self._latest is not None:
             self.show(self._latest)
 
@@ -92,8 +94,7 @@ class Ground:
         if self._version != (snapshot.ground_version, snapshot.generation):
             self._version = (snapshot.ground_version, snapshot.generation)
             self._passes_key = None
-            self._field(snapshot)
-            self._flags(snapshot)
+            self._ground(snapshot)
         self._passes(snapshot)
         self.worked.feed(snapshot.worked)
         self.track.feed(snapshot.track)
@@ -108,14 +109,45 @@ class Ground:
             box = self.extent.with_point(pose.east, pose.north)
             self.extent = self.extent if box == self.extent else box.grown(0.15)
 
+    def _ground(self, snapshot: Snapshot) -> None:
+        """Field and flags; a line that was moved changes the version too, and leaves them as they are."""
+        seen = self._seen
+        self._seen = snapshot
+        if seen is None or seen.plan is not snapshot.plan or not _same(seen.field_rings, snapshot.field_rings):
+            self._field(snapshot)
+            self._flags(snapshot)
+
     def _field(self, snapshot: Snapshot) -> None:
         palette, rings = self._palette, snapshot.field_rings
         self.extent = None
+        self._grid(shown=not rings)
         self._mesh("field/soil", ground_mesh(rings), palette.soil)
         self._mesh("field/exclusions", exclusion_mesh(rings), palette.exclusion)
         self._lines("field/boundary", ring_strokes(rings[:1]), palette.boundary, 4.0)
         self._lines("field/exclusion_edges", ring_strokes(rings[1:]), palette.exclusion_edge, 3.0)
         self._lines("field/mainland", mainland_strokes(snapshot), palette.mainland, 2.0)
+
+    def _grid(self, *, shown: bool) -> None:
+        """Without a field a grid of 10 m lies on the meadow, so that one sees that and where one moves."""
+        path = f"{WORLD}/grid"
+        if not shown:
+            self._drop(path)
+            return
+        colour = flat_source(self._palette.grid)
+        self._scene.add_grid(
+            path,
+            infinite_grid=True,
+            cell_size=10.0,
+            cell_color=colour,
+            cell_thickness=1.2,
+            section_size=50.0,
+            section_color=colour,
+            section_thickness=1.8,
+            fade_distance=420.0,
+            fade_strength=1.5,
+            shadow_opacity=0.0,
+            position=(0.0, 0.0, Z_GRID),
+        )
 
     def _mesh(self, name: str, mesh: Mesh | None, colour: Rgb) -> None:
         path = f"{WORLD}/{name}"
@@ -172,6 +204,11 @@ class Ground:
                 self._drop(path)
             else:
                 self._scene.add_glb(path, flag(colour), position=(*place, 0.0), cast_shadow=False)
+
+
+def _same(one: tuple[FloatArray, ...], other: tuple[FloatArray, ...]) -> bool:
+    """True when both hold the very same arrays."""
+    return len(one) == len(other) and all(a is b for a, b in zip(one, other, strict=True))
 
 
 def _pass_states(guidance: Guidance | None) -> object:

@@ -270,4 +270,4 @@ def _strokes(rows: FloatArray) -> Segments:
 
 def add_track(scene: viser.SceneApi, name: str, strokes: Segments, colour: Rgb) -> viser.LineSegmentsHandle:
     """A node of track."""
-    return scene.add_line_segments(name, strokes, colour, thickness=2.5, thickness_units="screen")
+    return scene.add_line_segments(name, strokes, colour, thickness=2.0, thickness_units="screen")

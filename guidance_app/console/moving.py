@@ -155,6 +155,7 @@ class ClientScene:
             return
         self._home_key = key
         width = self._job.implement.working_width
+        self._lines["target"].thickness = 4.0 if self._mode is ViewMode.WHOLE_FIELD else 6.0
         home = camera_home(self._mode, width=width, extent=box, aspect=aspect)
         self._home = home
         camera.fov = FIELD_OF_VIEW
@@ -205,7 +206,7 @@ class ClientScene:
     def _ahead(self, snapshot: Snapshot, shown: Shown | None) -> None:
         """The arc and the ghost, once for each prediction; nothing while the position is stale."""
         ahead = snapshot.prediction if shown is not None and not shown.stale else None
-        if not self._changed("ahead", ahead if ahead is None else (id(ahead), ahead.pose)):
+        if not self._changed("ahead", ahead):
             return
         self._assign("arc", arc_strokes(snapshot) if ahead else None)
         self._assign("ghost", ghost_strokes(snapshot, self._job.tractor, self._job.implement) if ahead else None)
@@ -223,7 +224,7 @@ class ClientScene:
 
     def _target(self, snapshot: Snapshot) -> None:
         target: Pass | None = None if snapshot.guidance is None else snapshot.guidance.target
-        if self._changed("target", None if target is None else (target.number, id(target), snapshot.ground_version)):
+        if self._changed("target", None if target is None else (target.number, _fingerprint(target.points))):
             self._assign("target", None if target is None else pass_strokes(target))
 
     def _turn(self, snapshot: Snapshot) -> None:
@@ -300,7 +301,7 @@ _LINES = (
     ("ghost", f"{HERE}/ghost", 2.5),
     ("hollow", f"{HERE}/hollow", 3.0),
     ("ellipse", f"{WORLD}/uncertain", 2.0),
-    ("target", f"{WORLD}/target", 7.0),
+    ("target", f"{WORLD}/target", 6.0),
     ("turn", f"{WORLD}/turn", 5.0),
 )
 """Name, node and width in pixels of every line that moves."""

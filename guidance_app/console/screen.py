@@ -74,7 +74,6 @@ class Screen:
         self._lock = threading.Lock()
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name="screen", daemon=True)
-        self._closed = False
 
     @property
     def clients(self) -> int:
@@ -88,15 +87,18 @@ class Screen:
 
     def start(self) -> None:
         """Begins to draw, for those who are there and those who come."""
+        self.attach()
+        self._thread.start()
+
+    def attach(self) -> None:
+        """Draws the ground and awaits clients; ``start`` does this and then calls ``tick`` for ever."""
         self._theme()
         self._ground.show(self._session.snapshot())
         self._server.on_client_connect(self._arrive)
         self._server.on_client_disconnect(self._leave)
-        self._thread.start()
 
     def close(self) -> None:
         """Ends the loop and waits for it; again is harmless."""
-        self._closed = True
         self._stop.set()
         if self._thread.is_alive():
             self._thread.join(STOP_S)

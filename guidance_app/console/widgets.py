@@ -7,14 +7,25 @@ the program does not set the widget.
 
 import html
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import viser
 
 from guidance_app.view.status import Figure, Level
 
-__all__ = ["STYLE", "Choice", "Followed", "Shown", "buttons", "notice_html", "rows_html", "tiles_html", "words_html"]
+__all__ = [
+    "STYLE",
+    "Choice",
+    "Followed",
+    "Shown",
+    "buttons",
+    "notice_html",
+    "notice_line_html",
+    "rows_html",
+    "tiles_html",
+    "words_html",
+]
 
 HELD_S = 1.2
 """So long after a finger the program leaves a widget alone."""
@@ -32,11 +43,20 @@ STYLE = """<style>
 .g-bad::before{background:#e03131;border-radius:0}.g-off::before{background:#868e96}
 .g-notice{margin:.1em .6em .45em;padding:.3em .6em;font-size:.66em;line-height:1.3;border-radius:.3em;
  border-left:.25em solid #f08c00;background:rgba(240,140,0,.13)}
-.g-rows{padding:.1em .75em .5em;font-size:.74em;line-height:1.55;font-variant-numeric:tabular-nums}
+.g-line .g-notice{white-space:nowrap;overflow:hidden;text-overflow:ellipsis}
+.g-rows{padding:.1em 1.1em .5em .75em;font-size:.74em;line-height:1.55;font-variant-numeric:tabular-nums}
 .g-rows div{display:flex;justify-content:space-between;gap:1em}
 .g-rows i{font-style:normal;color:var(--mantine-color-dimmed);white-space:nowrap}
 .g-rows b{font-weight:500;text-align:right;overflow-wrap:anywhere}
-.mantine-Button-root[data-size="compact-xs"]{height:2.35em;font-size:.8em;padding-inline:.45em;--button-fz:.8em}
+.mantine-Button-root[data-size="compact-xs"]{height:2.55em;font-size:.74em;--button-fz:.74em;padding-inline:.35em;
+ color:var(--mantine-color-text);border-color:var(--mantine-color-default-border);
+ background:var(--mantine-color-default-hover);font-weight:550}
+.mantine-Button-root[data-size="compact-xs"]:active{background:var(--mantine-primary-color-filled);color:#fff}
+.mantine-Slider-thumb{height:1.5rem!important;width:1rem!important;border-radius:.3rem!important}
+.mantine-Slider-trackContainer{height:1.6rem!important}
+[style*="width: 7.25em"]{width:5.2em!important}
+@media(max-width:576px){[style*="width: 20em"]{width:100vw!important}
+ .g-tile:nth-child(-n+4){display:none}.g-tiles{padding-bottom:.3em}}
 </style>"""
 """Sizes follow the page's font size; colours are the theme's own, so that day and night need nothing here."""
 
@@ -59,6 +79,14 @@ def words_html(words: str, level: Level) -> str:
 def notice_html(notices: Iterable[str]) -> str:
     """Things to know, in boxes of their own."""
     return "".join(f'<div class="g-notice">{html.escape(one)}</div>' for one in notices)
+
+
+def notice_line_html(notices: Sequence[str]) -> str:
+    """The first thing to know on one line, and how many more there are."""
+    if not notices:
+        return ""
+    more = f" (and {len(notices) - 1} more: Info)" if len(notices) > 1 else ""
+    return f'<div class="g-line">{notice_html([notices[0] + more])}</div>'
 
 
 def rows_html(rows: Iterable[tuple[str, str]]) -> str:
@@ -114,22 +142,34 @@ def buttons(
 
 
 class Choice:
-    """A row of buttons of which one is chosen; the chosen one is marked by a dot before its words."""
+    """A row of buttons of which one is chosen, marked by a dot; ``beside`` are plain buttons in the same row."""
 
     MARK = "● "
 
-    def __init__(self, gui: viser.GuiApi, label: str, options: Sequence[str], heard: Callable[[str], None]) -> None:
-        self._options = tuple(options)
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        label: str,
+        options: Sequence[str],
+        heard: Callable[[str], None],
+        beside: Mapping[str, Callable[[], None]] | None = None,
+    ) -> None:
+        self._options = tuple(str(one) for one in options)  # viser makes a value of the first one's type
+        self._beside = dict(beside or {})
         self._chosen: str | None = None
-        self._handle = gui.add_button_group(label, self._options)
+        self._handle = gui.add_button_group(label, (*self._options, *self._beside))
 
         @self._handle.on_click
         def _(event: viser.GuiEvent[viser.GuiButtonGroupHandle]) -> None:
-            heard(event.target.value.removeprefix(self.MARK))
+            words = event.target.value.removeprefix(self.MARK)
+            if words in self._beside:
+                self._beside[words]()
+            else:
+                heard(words)
 
     def show(self, chosen: str) -> None:
         """Marks the chosen one."""
         if chosen != self._chosen:
             self._chosen = chosen
             marked = (f"{self.MARK}{one}" if one == chosen else one for one in self._options)
-            self._handle.options = tuple(marked)
+            self._handle.options = (*marked, *self._beside)

@@ -28,6 +28,12 @@ FIELD_OF_VIEW = math.radians(50)
 """Vertical, of every view."""
 
 NEAR, FAR = 0.3, 3000.0
+UPRIGHT = 0.8
+"""A window narrower than this against its height is a phone's."""
+
+SHEET = 0.32
+"""The share of a phone's window that the panels cover from below."""
+
 HEADING_EASE = 0.35
 """Time constant in seconds by which the world's direction follows the tractor's: the ground does not shake."""
 
@@ -134,23 +140,26 @@ def camera_home(mode: ViewMode, *, width: float, extent: Extent, aspect: float) 
     """Where the camera begins: ``width`` is the implement's, ``extent`` the field's, ``aspect`` the window's w / h."""
     up = math.tan(FIELD_OF_VIEW / 2)
     across = up * aspect
+    covered = SHEET if aspect < UPRIGHT else 0.0
     match mode:
         case ViewMode.DRIVER:
-            return _behind(max(11.0, (0.62 * width + 2.0) / across))
+            return _behind(max(15.0, (0.62 * width + 3.5) / across), covered)
         case ViewMode.HEADING_UP:
             height = max(26.0 / up, (0.9 * width + 8.0) / across)
-            return _above(height, ahead=0.36 * height * up)
+            return _above(height, ahead=(0.36 - 2 * covered) * height * up)
         case ViewMode.NORTH_UP:
-            return _above(max(34.0 / up, (1.2 * width + 10.0) / across), ahead=0.0)
+            height = max(34.0 / up, (1.2 * width + 10.0) / across)
+            return _above(height, ahead=-covered * height * up)
         case ViewMode.WHOLE_FIELD:
             across_m, up_m = extent.size
-            return _above(1.1 * max(up_m / up, across_m / across) / 2, ahead=0.0)
+            height = 1.12 * max(up_m / (up * (1 - covered)), across_m / across) / 2
+            return _above(height, ahead=-covered * height * up)
 
 
-def _behind(distance: float) -> CameraHome:
-    """Over the driver's shoulder, ``distance`` from the tractor, the horizon in the upper quarter."""
-    back, height = 0.86 * distance, 0.52 * distance
-    return CameraHome((-back, 0.0, height), (0.62 * distance, 0.0, 0.0), NEAR, FAR)
+def _behind(distance: float, covered: float) -> CameraHome:
+    """Over the driver's shoulder, ``distance`` from the tractor; it looks lower where the window's foot is covered."""
+    back, height = 0.88 * distance, 0.48 * distance
+    return CameraHome((-back, 0.0, height), ((0.62 - 1.6 * covered) * distance, 0.0, 0.0), NEAR, FAR)
 
 
 def _above(height: float, *, ahead: float) -> CameraHome:

@@ -32,6 +32,7 @@ class Palette:
     sky: Rgb
     horizon: Rgb
     meadow: Rgb
+    grid: Rgb
     soil: Rgb
     exclusion: Rgb
     boundary: Rgb
@@ -60,6 +61,7 @@ DAY = Palette(
     sky=(116, 166, 212),
     horizon=(208, 220, 224),
     meadow=(134, 152, 104),
+    grid=(108, 127, 82),
     soil=(150, 124, 94),
     exclusion=(96, 122, 78),
     boundary=(233, 193, 60),
@@ -72,7 +74,7 @@ DAY = Palette(
     number=(226, 226, 222),
     number_done=(150, 156, 150),
     worked=(62, 124, 148),
-    track=(44, 58, 70),
+    track=(36, 82, 102),
     predicted=(70, 190, 222),
     uncertain=(226, 168, 224),
     stale=(170, 172, 174),
@@ -87,6 +89,7 @@ NIGHT = Palette(
     sky=(8, 12, 20),
     horizon=(24, 32, 42),
     meadow=(18, 25, 21),
+    grid=(34, 45, 38),
     soil=(44, 37, 30),
     exclusion=(22, 38, 26),
     boundary=(178, 134, 42),
@@ -99,7 +102,7 @@ NIGHT = Palette(
     number=(176, 176, 170),
     number_done=(84, 92, 92),
     worked=(22, 58, 74),
-    track=(92, 112, 124),
+    track=(46, 84, 100),
     predicted=(44, 164, 184),
     uncertain=(150, 104, 150),
     stale=(112, 114, 116),

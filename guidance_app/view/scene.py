@@ -161,22 +161,23 @@ class NumberLayout:
     size: float
     stretch: float
     most: int
+    reach: float = math.inf
 
 
 def number_layout(mode: ViewMode, camera_distance: float) -> NumberLayout:
     """Sizes follow the camera's distance, so that a number looks equally large near and far."""
     d = camera_distance
     if mode is ViewMode.DRIVER:
-        return NumberLayout(ahead=1.5 * d, every=1.5 * d, size=0.052 * d, stretch=2.0, most=9)
+        return NumberLayout(ahead=0.95 * d, every=1.2 * d, size=0.05 * d, stretch=2.2, most=9, reach=1.3 * d)
     if mode is ViewMode.WHOLE_FIELD:
-        return NumberLayout(ahead=0.0, every=1.0, size=0.011 * d, stretch=1.0, most=MOST_NUMBERS)
-    return NumberLayout(ahead=0.16 * d, every=0.32 * d, size=0.015 * d, stretch=1.0, most=17)
+        return NumberLayout(ahead=0.0, every=1.0, size=0.0145 * d, stretch=1.0, most=MOST_NUMBERS)
+    return NumberLayout(ahead=0.16 * d, every=0.32 * d, size=0.015 * d, stretch=1.0, most=17, reach=d)
 
 
 def numbers(snapshot: Snapshot, shown: Shown | None, mode: ViewMode, layout: NumberLayout, palette: Palette) -> Lines:
     """The numbers of the passes that matter in this view; at most 48."""
     if mode is ViewMode.WHOLE_FIELD:
-        chosen = _numbers_at_ends(snapshot.passes, layout)
+        chosen = _numbers_at_ends(snapshot.passes, snapshot.field_rings, layout)
     elif shown is not None:
         chosen = _numbers_on_lines(snapshot.passes, shown, mode, layout)
     else:
@@ -222,12 +223,11 @@ def _numbers_on_lines(passes: Sequence[Pass], shown: Shown, mode: ViewMode, layo
         beside = place[0] + right[0] * shift, place[1] + right[1] * shift
         placed.append((gap, (line, beside, top)))
     placed.sort(key=lambda item: item[0])
-    reach = 3.0 * layout.every
-    return [item for gap, item in placed if gap <= reach]
+    return [item for gap, item in placed if gap <= layout.reach]
 
 
-def _numbers_at_ends(passes: Sequence[Pass], layout: NumberLayout) -> list[_Placed]:
-    """Beyond the lower end of each pass, every second or third one where they would stand too close."""
+def _numbers_at_ends(passes: Sequence[Pass], rings: Sequence[FloatArray], layout: NumberLayout) -> list[_Placed]:
+    """Outside the field below each pass, every second or third one where they would stand too close."""
     straight = [line for line in passes if not line.lap and not line.endless and len(line.points) > 1]
     if not straight:
         return []
@@ -240,9 +240,23 @@ def _numbers_at_ends(passes: Sequence[Pass], layout: NumberLayout) -> list[_Plac
         end, inner = (first, second) if (first[1], first[0]) <= (last[1], last[0]) else (last, before)
         out = end - inner
         out = out / (np.hypot(*out) or 1.0)
-        place = end + out * 2.0 * layout.size
+        place = end + out * (_way_out(end, out, rings) + 1.6 * layout.size)
         placed.append((line, (float(place[0]), float(place[1])), (0.0, 1.0)))
     return placed
+
+
+def _way_out(end: FloatArray, out: FloatArray, rings: Sequence[FloatArray]) -> float:
+    """Metres from the end of a pass to the field's boundary, in the direction it goes on."""
+    if not rings:
+        return 0.0
+    start, step = rings[0][:-1], np.diff(rings[0], axis=0)
+    seen = start - end
+    across = out[0] * step[:, 1] - out[1] * step[:, 0]
+    across = np.where(np.abs(across) < 1e-12, np.inf, across)
+    ahead = (seen[:, 0] * step[:, 1] - seen[:, 1] * step[:, 0]) / across
+    share = (seen[:, 0] * out[1] - seen[:, 1] * out[0]) / across
+    hits = ahead[(ahead > 0) & (share >= 0) & (share <= 1)]
+    return float(hits.max()) if len(hits) else 0.0
 
 
 def _nearest_gap(passes: Sequence[Pass]) -> float:

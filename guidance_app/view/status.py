@@ -104,12 +104,11 @@ def _signed(metres: float, units: Units) -> str:
 def nudge_steps(units: Units) -> tuple[tuple[str, float], ...]:
     """The four nudges of a line, from left to right: (words, metres to the right)."""
     small, large, unit = (1, 4, INCH) if units is Units.IMPERIAL else (2, 10, 0.01)
-    name = "in" if units is Units.IMPERIAL else "cm"
     return (
-        (f"◀ {large}", -large * unit),
-        (f"◀ {small} {name}", -small * unit),
-        (f"{small} {name} ▶", small * unit),
-        (f"{large} ▶", large * unit),
+        (f"◀{large}", -large * unit),
+        (f"◀{small}", -small * unit),
+        (f"{small}▶", small * unit),
+        (f"{large}▶", large * unit),
     )
 
 
@@ -126,7 +125,7 @@ def work_view(snapshot: Snapshot, now: float, units: Units) -> WorkView:
         working=snapshot.working,
         work_words="Working · press to lift" if snapshot.working else "Lifted · press to work",
         pass_words=pass_words(snapshot.guidance),
-        line_words=f"Line moved {_signed(line_offset(snapshot.offsets), units)}",
+        line_words=f"Moved {_signed(line_offset(snapshot.offsets), units)}",
         notices=snapshot.notices,
     )
 
@@ -140,12 +139,12 @@ def figures(snapshot: Snapshot, units: Units) -> tuple[Figure, ...]:
     return (
         _place_in_order(snapshot.guidance),
         Figure("speed", speed, speed_unit(units)),
-        Figure("time left", *_hours(remaining)),
-        _area("per hour", None if rate is None else rate * 3600, units),
-        _area("done", totals.worked, units),
-        _area("left", totals.left, units),
         _area("overlap", totals.overlap, units),
         _area("headland", totals.headland, units),
+        _area("done", totals.worked, units),
+        _area("left", totals.left, units),
+        Figure("time left", *_hours(remaining)),
+        _area("per hour", None if rate is None else rate * 3600, units),
     )
 
 
@@ -291,7 +290,7 @@ def replay_rows(
     position: float, duration: float, speed: float, catching_up: float | None
 ) -> tuple[tuple[str, str], ...]:
     """Where the recording stands."""
-    pace = "as fast as it can" if math.isinf(speed) else f"{speed:g} times real time"
+    pace = "as fast as it can" if math.isinf(speed) else f"{speed:g} × real time"
     rows = [("Position", f"{clock(position)} of {clock(duration)}"), ("Pace", pace)]
     if catching_up is not None:
         rows.append(("Catching up", f"{catching_up * 100:.0f} %"))

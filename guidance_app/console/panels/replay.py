@@ -5,7 +5,7 @@ from typing import ClassVar
 import viser
 
 from guidance_app.console.desk import Desk, Hands
-from guidance_app.console.widgets import Choice, Followed, Shown, rows_html
+from guidance_app.console.widgets import Choice, Followed, Shown, notice_html, rows_html
 from guidance_app.view.status import clock, replay_rows
 
 __all__ = ["Replay"]
@@ -40,6 +40,7 @@ class Replay:
         self._position = Followed(slider, lambda second: control.seek(float(second)))
         self._speed = Choice(gui, "Speed ×", tuple(_SPEEDS), lambda words: control.set_speed(_SPEEDS[words]))
         self._rows = Shown(gui)
+        self._notices = Shown(gui)
 
     def show(self, desk: Desk) -> None:
         """Brings button, slider and words up to where the recording is."""
@@ -51,3 +52,4 @@ class Replay:
         self._position.show(int(state.position))
         self._speed.show(_WORDS.get(state.speed, ""))
         self._rows.show(rows_html(replay_rows(state.position, state.duration, state.speed, state.catching_up)))
+        self._notices.show(notice_html(desk.snapshot.notices))

@@ -5,7 +5,7 @@ from typing import ClassVar
 import viser
 
 from guidance_app.console.desk import Desk, Hands
-from guidance_app.console.widgets import STYLE, Shown, notice_html, tiles_html, words_html
+from guidance_app.console.widgets import STYLE, Shown, notice_line_html, tiles_html, words_html
 from guidance_app.model import SetWork
 from guidance_app.view.status import work_view
 
@@ -31,7 +31,7 @@ class Summary:
     def show(self, desk: Desk) -> None:
         """Brings the numbers up to now."""
         view = work_view(desk.snapshot, desk.now, desk.units)
-        self._notices.show(notice_html(view.notices))
+        self._notices.show(notice_line_html(view.notices))
         self._tiles.show(tiles_html(view.figures))
         self._fix.show(words_html(view.fix, view.fix_level))
         self._work.label = view.work_words

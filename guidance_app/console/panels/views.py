@@ -5,7 +5,7 @@ from typing import ClassVar
 import viser
 
 from guidance_app.console.desk import Desk, Hands
-from guidance_app.console.widgets import Choice, Followed, buttons
+from guidance_app.console.widgets import Choice, Followed
 from guidance_app.estimation.prediction import LOOK_AHEAD_MAX, LOOK_AHEAD_MIN
 from guidance_app.model import SetLookAhead
 from guidance_app.view.camera import ViewMode
@@ -21,13 +21,15 @@ class Views:
     title: ClassVar[str] = "Views"
 
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
-        self._near = Choice(
-            gui, "View", (ViewMode.DRIVER, ViewMode.HEADING_UP), lambda words: hands.look(ViewMode(words))
+        follow = (ViewMode.DRIVER, ViewMode.HEADING_UP, ViewMode.NORTH_UP)
+        self._follow = Choice(gui, "View", follow, lambda words: hands.look(ViewMode(words)))
+        self._whole = Choice(
+            gui,
+            "",
+            (ViewMode.WHOLE_FIELD,),
+            lambda words: hands.look(ViewMode(words)),
+            {"Bring back": hands.bring_back},
         )
-        self._far = Choice(
-            gui, "", (ViewMode.NORTH_UP, ViewMode.WHOLE_FIELD), lambda words: hands.look(ViewMode(words))
-        )
-        buttons(gui, "", (("Bring the view back", hands.bring_back),))
         self._light = Choice(gui, "Light", tuple(_NIGHT), lambda words: hands.set_night(_NIGHT[words]))
         slider = gui.add_slider(
             "Look ahead",
@@ -41,7 +43,7 @@ class Views:
 
     def show(self, desk: Desk) -> None:
         """Brings marks and slider up to what is."""
-        self._near.show(desk.mode)
-        self._far.show(desk.mode)
+        self._follow.show(desk.mode)
+        self._whole.show(desk.mode)
         self._light.show("Night" if desk.night else "Day")
         self._ahead.show(round(desk.snapshot.look_ahead_s, 1))

@@ -41,9 +41,9 @@ class Work:
         )
         steps = nudge_steps(hands.desk().units)
         self._line = buttons(gui, "Line", tuple((words, partial(post, Nudge(metres))) for words, metres in steps))
-        buttons(gui, "", (("Line here", lambda: post(LineHere())), ("Back to plan", self._drop_offsets)))
-        self._mode = Choice(gui, "Work by", tuple(_MODES), lambda words: post(SetWorkMode(_MODES[words])))
-        buttons(gui, "", (("Turn round on this line", lambda: post(ReverseDirection())),))
+        here = (("Here", lambda: post(LineHere())), ("As planned", self._drop_offsets))
+        self._way = buttons(gui, "Line", (*here, ("Other way", lambda: post(ReverseDirection()))))
+        self._mode = Choice(gui, "Works by", tuple(_MODES), lambda words: post(SetWorkMode(_MODES[words])))
 
     def _take(self, step: int) -> None:
         number = neighbour(self._hands.desk().snapshot, step)
