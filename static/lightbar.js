@@ -1,491 +1,136 @@
-// The light bar and the prediction bar, drawn from the messages of /live (their members: guidance_app/view/bar.py).
-// Everything that can be wrong was decided on the server; this file draws, and says NO DATA when it hears nothing.
-"use strict";
+// The light bar across the top of the page: bars on a canvas, words at both sides, alarms. What it shows was decided on the
+// server (guidance_app/view/bar.py); here it is only shown, and NO DATA when nothing is heard.
 
-(() => {
-  const SILENT_AFTER = 800; // ms without a message, or of lateness, before nothing is believed any more
-  const HANG_UP_AFTER = 3000; // ms of silence before the socket is replaced
-  const RETRY = 500;
-  const LATENESS_WINDOW = 15000;
-  const ALARM_GAP = 10000;
-  const LEAN_SHOWN = 3; // a lean is a few degrees; it is drawn so much larger
-  const LEAN_MOST = 60;
+import { makeBars } from "./bars.js";
+import { listen } from "./live.js";
 
-  const element = (kind, name, parent, text = "") => {
-    const made = document.createElement(kind);
-    made.className = name;
-    made.textContent = text;
-    parent.append(made);
-    return made;
-  };
-  const setText = (target, text) => {
-    if (target.textContent !== text) target.textContent = text;
-  };
-  const sentence = (words) => words.charAt(0).toUpperCase() + words.slice(1);
+const ALARM_GAP = 10000;
 
-  // --- the frame: canvas over the full width, words at both sides ---
-  const bar = document.createElement("header");
-  bar.id = "lightbar";
-  const canvas = element("canvas", "", bar);
-  canvas.setAttribute("role", "img");
-  const left = element("div", "side left", bar);
-  const right = element("div", "side right", bar);
-  const passLine = element("div", "pass", left);
-  const passName = element("span", "name", passLine);
-  const passDetail = element("span", "detail", passLine);
-  const turnLine = element("div", "turn", left);
-  const workLine = element("div", "work", left);
-  const speedLine = element("div", "speed", right);
-  const speedNumber = element("span", "number", speedLine);
-  const speedUnit = element("span", "unit", speedLine);
-  const fixLine = element("div", "fix", right);
-  const lastLine = element("div", "last", right);
-  const guidedPoint = element("span", "guided", lastLine);
-  const workedArea = element("span", "area", lastLine);
-  document.body.append(bar);
+const style = { speed: "", zones: "gggyyyrr", guided: "tractor", ahead: "", sounds: false, start: null };
 
-  const pen = canvas.getContext("2d");
-  const style = { speed: "", zones: "gggyyyrr", guided: "tractor", ahead: "", sounds: false, start: null };
-  const shared = {
-    message: null,
-    state: "opening",
-    drawn: null,
-    draws: 0,
-    timings: [],
-    connections: 0,
-  };
-  window.__lightbar = shared;
+const shared = {
+  message: null, // the newest that was believed
+  state: "opening",
+  drawn: null, // what stands on the canvas
+  timings: [],
+  connections: 0,
+  lastHeard: performance.now(),
+  silentSince: null,
+};
+window.__lightbar = shared;
 
-  let size = { width: 0, height: 0, side: 0 };
-  let colours = {};
-  let silentSince = performance.now();
-  let lastHeard = performance.now();
+// --- the frame ---
+const element = (kind, name, parent) => {
+  const made = document.createElement(kind);
+  made.className = name;
+  parent.append(made);
+  return made;
+};
+const setText = (target, text) => {
+  if (target.textContent !== text) target.textContent = text;
+};
 
-  const readColours = () => {
-    const computed = getComputedStyle(bar);
-    colours = {};
-    for (const name of ["ground", "edge", "ink", "dim", "hollow", "off", "green", "yellow", "red", "on-green", "track", "mark"]) {
-      colours[name] = computed.getPropertyValue(`--${name}`).trim();
-    }
-  };
+const bar = document.createElement("header");
+bar.id = "lightbar";
+const canvas = element("canvas", "", bar);
+canvas.setAttribute("role", "img");
+const left = element("div", "side left", bar);
+const right = element("div", "side right", bar);
+const passLine = element("div", "pass", left);
+const passName = element("span", "name", passLine);
+const passDetail = element("span", "detail", passLine);
+const turnLine = element("div", "turn", left);
+const workLine = element("div", "work", left);
+const speedLine = element("div", "speed", right);
+const speedNumber = element("span", "number", speedLine);
+const speedUnit = element("span", "unit", speedLine);
+const fixLine = element("div", "fix", right);
+const lastLine = element("div", "last", right);
+const guidedPoint = element("span", "guided", lastLine);
+const workedArea = element("span", "area", lastLine);
+document.body.append(bar);
 
-  // --- drawing ---
-  const font = (pixels, weight = 700) => {
-    pen.font = `${weight} ${pixels}px system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", "DejaVu Sans", sans-serif`;
-  };
-  const words = (text, x, y, colour, align = "center") => {
-    pen.fillStyle = colour;
-    pen.textAlign = align;
-    pen.textBaseline = "middle";
-    pen.fillText(text, x, y);
-  };
-  const box = (x, y, width, height, radius) => {
-    pen.beginPath();
-    pen.roundRect(x, y, width, height, radius);
-  };
-  const zoneColour = (lamp) => colours[{ g: "green", y: "yellow", r: "red" }[style.zones[lamp - 1]] ?? "green"];
+const bars = makeBars(canvas, style);
 
-  // Where everything goes: the same for every message of one size.
-  const layout = () => {
-    const { width, height, side } = size;
-    const phone = width <= 600;
-    const from = phone ? 8 : side + 10;
-    const span = width - 2 * from;
-    const large = phone ? 42 : width < 1150 ? 52 : 57; // of the number: its digits are 0.73 of this high
-    const rowTop = phone ? 8 : 10;
-    const rowHeight = phone ? 62 : 74;
-    const trackTop = rowTop + rowHeight + (phone ? 7 : 9);
-    const pill = Math.min(large * 4.55, span * 0.48);
-    return { width, height, phone, from, span, large, rowTop, rowHeight, pill, trackTop, trackHeight: 26, middle: width / 2 };
-  };
+// --- what is said beside the bars, to eyes, screen readers and tests ---
+const reason = () => {
+  if (shared.state === "silent") return "NO DATA";
+  const words = shared.message?.r ?? "connecting";
+  return words.charAt(0).toUpperCase() + words.slice(1);
+};
 
-  // One lamp: an arrow head that points where to steer, larger the farther out it stands.
-  const lamp = (x, width, place, number, direction, paint) => {
-    const tall = place.rowHeight * (0.46 + (0.54 * number) / style.zones.length);
-    const top = place.rowTop + (place.rowHeight - tall) / 2;
-    const thick = Math.min(width * 0.5, 16);
-    const deep = Math.max(2, Math.min(width - thick - 3, tall * 0.4));
-    const back = direction > 0 ? x - (thick + deep) / 2 : x + (thick + deep) / 2;
-    const at = (forward) => back + direction * forward;
-    pen.beginPath();
-    pen.moveTo(at(0), top);
-    pen.lineTo(at(thick), top);
-    pen.lineTo(at(thick + deep), top + tall / 2);
-    pen.lineTo(at(thick), top + tall);
-    pen.lineTo(at(0), top + tall);
-    pen.lineTo(at(deep), top + tall / 2);
-    pen.closePath();
-    pen.lineJoin = "round";
-    paint();
-  };
+const sayAttributes = (known) => {
+  bar.dataset.state = shared.state;
+  bar.dataset.crossTrack = known.x === undefined ? "" : (known.x / 1000).toFixed(3);
+  bar.dataset.lamps = known.k ?? "";
+  bar.dataset.number = known.d ?? "";
+  bar.dataset.sequence = known.q ?? "";
+  bar.dataset.fixAge = known.a === undefined ? "" : (known.a / 1000).toFixed(3);
+  const { steer, number, reason: why } = shared.drawn;
+  const spoken = why ?? (steer === "none" ? "on the line" : `steer ${steer} ${number}`);
+  if (canvas.getAttribute("aria-label") !== spoken) canvas.setAttribute("aria-label", spoken);
+};
 
-  const lamps = (place, lit) => {
-    const count = style.zones.length;
-    const room = (place.span - place.pill) / 2 - 6;
-    const width = room / count;
-    const colour = lit ? zoneColour(Math.abs(lit)) : colours.off;
-    for (const direction of [-1, 1]) {
-      for (let number = 1; number <= count; number++) {
-        const x = place.middle + direction * (place.pill / 2 + 6 + (number - 0.5) * width);
-        const on = lit !== null && Math.sign(lit) === direction && number <= Math.abs(lit);
-        lamp(x, width, place, number, direction, () => {
-          if (lit === null) {
-            pen.strokeStyle = colours.hollow;
-            pen.lineWidth = 1.5;
-            pen.stroke();
-          } else {
-            pen.fillStyle = on ? colour : colours.off;
-            pen.fill();
-          }
-        });
-      }
-    }
-  };
+const sayWords = (known) => {
+  const [, name, detail] = /^(.*?)( \(.*\))?$/.exec(known.n ?? "");
+  setText(passName, name);
+  setText(passDetail, detail ?? "");
+  const [distance, seconds, level, fits] = known.u ?? ["", "", "far", 1];
+  setText(turnLine, distance && `turn ${distance}${seconds && ` · ${seconds}`}${fits ? "" : " · tight"}`);
+  turnLine.dataset.level = level;
+  setText(workLine, known.w === undefined ? "" : known.w ? "working" : "implement up");
+  workLine.dataset.down = known.w ?? "";
+  setText(speedNumber, known.v ?? "");
+  setText(speedUnit, known.v ? style.speed : "");
+  setText(fixLine, known.f ?? "");
+  setText(guidedPoint, known.c === undefined ? "" : style.guided);
+  setText(workedArea, known.c ?? "");
+};
 
-  // An arrow beside the number: the side to steer to.
-  const steerArrow = (x, y, height, direction, colour) => {
-    pen.beginPath();
-    pen.moveTo(x + direction * height * 0.42, y);
-    pen.lineTo(x - direction * height * 0.32, y - height / 2);
-    pen.lineTo(x - direction * height * 0.32, y + height / 2);
-    pen.closePath();
-    pen.fillStyle = colour;
-    pen.fill();
-  };
+// --- alarms: one for a change for the worse, never two within ten seconds ---
+let lastAlarm = -ALARM_GAP;
+let lastLevel = "far";
 
-  // The number with its arrow, in a frame that is filled when the tractor is on the line.
-  const number = (place, message) => {
-    const [amount, unit] = message.d.split(" ");
-    const direction = amount === "0" ? 0 : -Math.sign(message.x);
-    const onLine = message.k === 0;
-    const colour = onLine ? colours.green : zoneColour(Math.abs(message.k));
-    const ink = onLine ? colours["on-green"] : colours.ink;
-    box(place.middle - place.pill / 2 + 1.5, place.rowTop + 1.5, place.pill - 3, place.rowHeight - 3, 12);
-    pen.fillStyle = onLine ? colour : colours.ground;
-    pen.fill();
-    pen.strokeStyle = colour;
-    pen.lineWidth = 3;
-    pen.stroke();
+const alarm = (before) => {
+  const level = shared.state === "guide" ? (shared.message.u?.[2] ?? "far") : lastLevel;
+  const lost = before === "guide" && shared.state !== "guide";
+  const turning = level === "now" && lastLevel !== "now";
+  lastLevel = level;
+  if (!style.sounds || !(lost || turning) || performance.now() - lastAlarm < ALARM_GAP) return;
+  const sounded = lost ? __page.beep(520, 160) && __page.beep(390, 240, 200) : __page.beep(880, 140);
+  if (sounded) lastAlarm = performance.now();
+};
 
-    const caption = place.phone ? 11 : 13;
-    font(caption, 700);
-    words(onLine ? "ON THE LINE" : `STEER ${direction < 0 ? "LEFT" : "RIGHT"}`, place.middle, place.rowTop + 12, ink);
+const show = (state) => {
+  const before = shared.state;
+  shared.state = state;
+  shared.drawn = bars.draw(state, shared.message, state === "guide" ? null : reason());
+  const known = state === "silent" ? {} : (shared.message ?? {});
+  sayAttributes(known);
+  sayWords(known);
+  alarm(before);
+};
 
-    const arrow = place.large * 0.6;
-    const room = place.pill - 2 * (arrow * 0.74 + 16);
-    let large = place.large;
-    let amountWidth, unitWidth;
-    do {
-      font(large);
-      amountWidth = pen.measureText(amount).width;
-      font(large * 0.38, 600);
-      unitWidth = pen.measureText(unit).width + 3;
-    } while (amountWidth + unitWidth > room && (large -= 1) > 20);
-    const y = place.rowTop + place.rowHeight / 2 + 8;
-    const start = place.middle - (amountWidth + unitWidth) / 2;
-    words(unit, start + amountWidth + 3, y + large * 0.19, ink, "left");
-    font(large);
-    words(amount, start, y + large * 0.04, ink, "left");
-    if (direction) {
-      const reach = place.pill / 2 - arrow * 0.42 - 12;
-      steerArrow(place.middle + direction * reach, y, arrow, direction, onLine ? ink : colour);
-    }
-    return direction;
-  };
+const fit = () => {
+  bars.fit(right.offsetWidth);
+  show(shared.state);
+};
+new ResizeObserver(fit).observe(bar);
+__page.onNight((night) => {
+  bar.dataset.palette = night ? "night" : "day";
+  fit();
+});
 
-  const track = (place, hollow) => {
-    box(place.from, place.trackTop, place.span, place.trackHeight, place.trackHeight / 2);
-    if (hollow) {
-      pen.strokeStyle = colours.hollow;
-      pen.lineWidth = 1.5;
-      pen.setLineDash([5, 5]);
-      pen.stroke();
-      pen.setLineDash([]);
-      return;
-    }
-    pen.fillStyle = colours.track;
-    pen.fill();
-  };
-
-  const predictionReach = (place) => place.span / 2 - (place.phone ? 78 : 104);
-
-  const ticks = (place) => {
-    pen.fillStyle = colours.hollow;
-    for (let step = 1; step <= style.zones.length; step++) {
-      for (const direction of [-1, 1]) {
-        const x = place.middle + (direction * predictionReach(place) * step) / style.zones.length;
-        pen.fillRect(x - 0.75, place.trackTop + place.trackHeight - 7, 1.5, 4);
-      }
-    }
-  };
-
-  // The mark leans as the tractor will stand to the line, and a band joins it to the middle.
-  const prediction = (place, message) => {
-    track(place, message.p === undefined);
-    if (message.p === undefined) return;
-    ticks(place);
-    const x = place.middle + (message.p / 1000) * predictionReach(place);
-    const y = place.trackTop + place.trackHeight / 2;
-    pen.globalAlpha = 0.35;
-    pen.fillStyle = colours.mark;
-    pen.fillRect(Math.min(x, place.middle), y - 5, Math.abs(x - place.middle), 10);
-    pen.globalAlpha = 1;
-    pen.fillStyle = colours.ink;
-    pen.fillRect(place.middle - 2, place.trackTop - 3, 4, place.trackHeight + 6);
-    const lean = Math.max(-LEAN_MOST, Math.min(LEAN_MOST, (message.h ?? 0) * LEAN_SHOWN));
-    const tall = place.trackHeight / 2 + 3;
-    pen.save();
-    pen.translate(x, y);
-    pen.rotate((lean * Math.PI) / 180);
-    pen.beginPath();
-    pen.moveTo(0, -tall);
-    pen.lineTo(tall * 0.82, tall * 0.86);
-    pen.lineTo(0, tall * 0.44);
-    pen.lineTo(-tall * 0.82, tall * 0.86);
-    pen.closePath();
-    pen.lineJoin = "round";
-    pen.lineWidth = 5;
-    pen.strokeStyle = colours.ground;
-    pen.stroke();
-    pen.fillStyle = colours.mark;
-    pen.fill();
-    pen.restore();
-    if (place.phone) return;
-    const outside = (message.p >= 0 ? 1 : -1) * (Math.abs(message.p) > 750 ? -1 : 1);
-    font(15, 650);
-    words(message.e, x + outside * (tall + 8), y + 1, colours.ink, outside > 0 ? "left" : "right");
-  };
-
-  const labels = (place) => {
-    const y = place.trackTop + place.trackHeight / 2 + 1;
-    font(place.phone ? 11 : 13, 700);
-    words("HEADING", place.from + 14, y, colours.dim, "left");
-    words(style.ahead && `IN ${style.ahead}`, place.from + place.span - 14, y, colours.dim, "right");
-  };
-
-  // Nothing to steer by: hollow lamps, and the reason over them in words.
-  const why = () => sentence(shared.message?.r ?? "connecting");
-
-  const hollow = (place, reason) => {
-    lamps(place, null);
-    track(place, true);
-    const room = place.span - (place.phone ? 40 : 100);
-    let lines = [reason];
-    let pixels = place.phone ? 24 : 32;
-    const widest = () => {
-      font(pixels);
-      return Math.max(...lines.map((line) => pen.measureText(line).width));
-    };
-    while (widest() > room && pixels > 12) {
-      pixels -= 1;
-      if (pixels === 18 && lines.length === 1) {
-        lines = inTwo(reason);
-        pixels = 22;
-      }
-    }
-    const width = Math.max(place.pill, widest() + 36);
-    box(place.middle - width / 2, place.rowTop + 1, width, place.rowHeight - 2, 12);
-    pen.fillStyle = colours.ground;
-    pen.fill();
-    pen.strokeStyle = colours.hollow;
-    pen.lineWidth = 2;
-    pen.stroke();
-    const y = place.rowTop + place.rowHeight / 2 + 2;
-    lines.forEach((line, k) => words(line, place.middle, y + (k - (lines.length - 1) / 2) * pixels * 1.2, colours.ink));
-  };
-
-  const inTwo = (text) => {
-    const gaps = [...text.matchAll(/ /g)].map((gap) => gap.index);
-    if (!gaps.length) return [text];
-    const half = text.length / 2;
-    const at = gaps.reduce((best, gap) => (Math.abs(gap - half) < Math.abs(best - half) ? gap : best));
-    return [text.slice(0, at), text.slice(at + 1)];
-  };
-
-  const noData = (place) => {
-    font(place.phone ? 40 : 56);
-    words("NO DATA", place.middle, place.height / 2 - (place.phone ? 14 : 10), "#ffffff");
-    font(place.phone ? 15 : 18, 500);
-    words("The console does not answer", place.middle, place.height / 2 + (place.phone ? 24 : 34), "#ffffff");
-  };
-
-  const draw = () => {
-    const { message, state } = shared;
-    const place = layout();
-    pen.clearRect(0, 0, place.width, place.height);
-    let direction = null;
-    if (state === "silent") {
-      noData(place);
-    } else if (state === "guide") {
-      lamps(place, message.k);
-      direction = number(place, message);
-      prediction(place, message);
-      labels(place);
-    } else {
-      hollow(place, why());
-      labels(place);
-    }
-    shared.draws += 1;
-    shared.drawn = {
-      state,
-      lamps: state === "guide" ? message.k : null,
-      number: state === "guide" ? message.d : null,
-      steer: direction === null ? null : ["left", "none", "right"][direction + 1],
-      prediction: state === "guide" && message.p !== undefined ? message.p / 1000 : null,
-      reason: state === "guide" ? null : state === "silent" ? "NO DATA" : why(),
-    };
-  };
-
-  // --- words at the sides, for eyes, screen readers and tests ---
-  const mirror = () => {
-    const { message, state } = shared;
-    const known = state === "silent" ? {} : (message ?? {});
-    bar.dataset.state = state;
-    bar.dataset.crossTrack = known.x === undefined ? "" : (known.x / 1000).toFixed(3);
-    bar.dataset.lamps = known.k ?? "";
-    bar.dataset.number = known.d ?? "";
-    bar.dataset.sequence = known.q ?? "";
-    bar.dataset.fixAge = known.a === undefined ? "" : (known.a / 1000).toFixed(3);
-    const [, name, detail] = /^(.*?)( \(.*\))?$/.exec(known.n ?? "");
-    setText(passName, name);
-    setText(passDetail, detail ?? "");
-    const [distance, seconds, level, fits] = known.u ?? ["", "", "far", 1];
-    setText(turnLine, distance && `turn ${distance}${seconds && ` · ${seconds}`}${fits ? "" : " · tight"}`);
-    turnLine.dataset.level = level;
-    setText(workLine, known.w === undefined ? "" : known.w ? "working" : "implement up");
-    workLine.dataset.down = known.w ?? "";
-    setText(speedNumber, known.v ?? "");
-    setText(speedUnit, known.v ? style.speed : "");
-    setText(fixLine, known.f ?? "");
-    setText(guidedPoint, known.c === undefined ? "" : style.guided);
-    setText(workedArea, known.c ?? "");
-    const { steer, number: shown, reason } = shared.drawn;
-    const spoken = reason ?? (steer === "none" ? "on the line" : `steer ${steer} ${shown}`);
-    if (canvas.getAttribute("aria-label") !== spoken) canvas.setAttribute("aria-label", spoken);
-  };
-
-  // --- alarms: one for a change for the worse, never two within ten seconds ---
-  let lastAlarm = -ALARM_GAP;
-  let lastLevel = "far";
-  const alarm = (before) => {
-    const level = shared.state === "guide" ? (shared.message.u?.[2] ?? "far") : lastLevel;
-    const lost = before === "guide" && shared.state !== "guide";
-    const turning = level === "now" && lastLevel !== "now";
-    lastLevel = level;
-    if (!style.sounds || !(lost || turning) || performance.now() - lastAlarm < ALARM_GAP) return;
-    const sounded = lost ? __page.beep(520, 160) && __page.beep(390, 240, 200) : __page.beep(880, 140);
-    if (sounded) lastAlarm = performance.now();
-  };
-
-  const show = (state) => {
-    const before = shared.state;
-    shared.state = state;
-    if (state === "silent" && before !== "silent") silentSince = performance.now();
-    if (state !== before) bar.dataset.state = state;
-    draw();
-    mirror();
-    alarm(before);
-  };
-
-  const fit = () => {
-    const ratio = window.devicePixelRatio || 1;
-    readColours();
-    size = { width: bar.clientWidth, height: bar.clientHeight, side: right.offsetWidth };
-    canvas.width = Math.round(size.width * ratio);
-    canvas.height = Math.round(size.height * ratio);
-    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-    show(shared.state);
-  };
-
-  // --- late messages: the least delay seen in half a minute counts as none ---
-  let delays = { since: 0, least: Infinity, before: Infinity };
-  const lateness = (sent) => {
-    const now = performance.now();
-    if (now - delays.since > LATENESS_WINDOW) delays = { since: now, least: Infinity, before: delays.least };
-    const delay = now - sent;
-    delays.least = Math.min(delays.least, delay);
-    return delay - Math.min(delays.least, delays.before);
-  };
-
-  // --- the socket ---
-  let socket = null;
-  let opening = 0;
-
-  const hear = (event) => {
-    const heard = performance.now();
-    const message = JSON.parse(event.data);
-    if (message.style) {
-      const { start } = message.style; // another start of the console: page and viser may be of another version
-      if (start && style.start && start !== style.start) location.reload();
-      Object.assign(style, message.style);
-      return;
-    }
-    const late = lateness(message.t);
+listen({
+  shared,
+  onMessage: (message) => {
     shared.message = message;
-    if (late < SILENT_AFTER) {
-      lastHeard = heard;
-      show(message.s);
-    }
-    event.target.send(String(message.t));
-    shared.timings.push({
-      sequence: message.q,
-      age: message.a ?? null,
-      sent: message.t,
-      drawn: performance.timeOrigin + performance.now(),
-      took: performance.now() - heard,
-    });
-    if (shared.timings.length > 1000) shared.timings.splice(0, 500);
-  };
-
-  const connect = () => {
-    opening = performance.now();
-    delays = { since: opening, least: Infinity, before: Infinity };
-    const scheme = location.protocol === "https:" ? "wss:" : "ws:";
-    const mine = new WebSocket(`${scheme}//${location.host}/live`);
-    socket = mine;
-    mine.onopen = () => {
-      shared.connections += 1;
-    };
-    mine.onmessage = hear;
-    mine.onclose = () => {
-      if (socket === mine) {
-        socket = null;
-        setTimeout(reconnect, RETRY);
-      }
-    };
-  };
-
-  // A console that was started anew asks for its PIN: then the page itself has to be asked for.
-  const reconnect = async () => {
-    try {
-      const answer = await fetch("/", { method: "HEAD", cache: "no-store" });
-      if (answer.status === 401) {
-        location.reload();
-        return;
-      }
-      connect();
-    } catch {
-      setTimeout(reconnect, RETRY);
-    }
-  };
-
-  const watch = () => {
-    const now = performance.now();
-    const quiet = now - lastHeard;
-    if (quiet > SILENT_AFTER && shared.state !== "silent") show("silent");
-    if (socket && shared.state === "silent" && now - Math.max(silentSince, opening, lastHeard) > HANG_UP_AFTER) {
-      const old = socket;
-      socket = null;
-      old.close();
-      reconnect();
-    }
-  };
-
-  new ResizeObserver(fit).observe(bar);
-  __page.onNight((night) => {
-    bar.dataset.palette = night ? "night" : "day";
-    fit();
-  });
-  connect();
-  setInterval(watch, 100);
-})();
+    show(message.s);
+  },
+  onStyle: (changed) => {
+    const { start } = changed; // of another start of the console: page and viser may be of another version
+    if (start && style.start && start !== style.start) location.reload();
+    Object.assign(style, changed);
+  },
+  onSilence: () => show("silent"),
+});

@@ -10,7 +10,7 @@ import contextlib
 import gzip
 import hashlib
 import mimetypes
-from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
@@ -25,7 +25,17 @@ from starlette.websockets import WebSocket
 from guidance_app.console.live import LiveHub
 from guidance_app.console.proxy import pass_through
 
-__all__ = ["Asset", "Download", "Downloads", "ServeViser", "front_app", "own_files", "patched_page", "static_folder"]
+__all__ = [
+    "ICON",
+    "Asset",
+    "Download",
+    "Downloads",
+    "ServeViser",
+    "front_app",
+    "own_files",
+    "patched_page",
+    "static_folder",
+]
 
 ANCHOR = "</head>"
 HEAD = (
@@ -36,8 +46,10 @@ HEAD = (
     '<link rel="stylesheet" href="/static/console.css">'
     '<script src="/static/page.js"></script>'
     '<script src="/static/touch.js"></script>'
-    '<script src="/static/lightbar.js" defer></script>'
+    '<script type="module" src="/static/lightbar.js"></script>'
 )
+ICON = "icon-192.png"
+"""What a browser gets that asks for the icon by its old name."""
 MEDIA_TYPES = {".js": "text/javascript", ".webmanifest": "application/manifest+json", ".svg": "image/svg+xml"}
 """What the system's own table gets wrong on some machines."""
 
@@ -79,8 +91,6 @@ class Download:
 
 Downloads = Mapping[str, Callable[[], Download | None]]
 """By the last part of its address, what makes the file when it is asked for; None when there is nothing to give."""
-
-ServeViser = Callable[[WebSocket], Awaitable[None]]
 
 
 def static_folder() -> Path:
@@ -124,6 +134,9 @@ def front_app(
         found = files.get(request.path_params["name"])
         return PlainTextResponse("no such file", 404) if found is None else found.response(request)
 
+    async def own_icon(request: Request) -> Response:
+        return files[ICON].response(request)
+
     async def download(request: Request) -> Response:
         make = downloads.get(request.path_params["name"])
         made = None if make is None else await asyncio.to_thread(make)
@@ -143,6 +156,7 @@ def front_app(
     routes = [
         Route("/", page),
         Route("/static/{name}", own_file),
+        Route("/favicon.ico", own_icon),
         Route("/download/{name}", download),
         WebSocketRoute("/live", hub.serve),
         WebSocketRoute("/", viser_socket),

@@ -10,13 +10,13 @@ from starlette.responses import HTMLResponse, PlainTextResponse, RedirectRespons
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from guidance_app.console.access import Admitted, Door, Names, Refused, Wait, foreign
-from guidance_app.console.front import Asset
+from guidance_app.console.front import ICON, Asset
 
 __all__ = ["Guard"]
 
 PIN_PAGE = "pin.html"
 PIN_PATH = "/pin"
-OPEN_FILES = frozenset({"pin.css", "pin.js", "icon.svg", "icon-192.png", "icon-512.png", "manifest.webmanifest"})
+OPEN_FILES = frozenset({"pin.css", "pin.js", "icon.svg", ICON, "icon-512.png", "manifest.webmanifest"})
 """What the PIN page needs. A browser asks for manifest and icons without the cookie."""
 LONGEST_FORM = 64
 ENTER = (
@@ -75,7 +75,7 @@ class Guard:
     async def _at_the_door(self, request: Request) -> Response:
         """What a browser gets that has not shown the PIN."""
         path = request.url.path
-        name = path.removeprefix("/static/")
+        name = ICON if path == "/favicon.ico" else path.removeprefix("/static/")
         if name != path and name in OPEN_FILES and name in self._files:
             return self._files[name].response(request)
         if path == PIN_PATH:

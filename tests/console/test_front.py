@@ -31,16 +31,6 @@ def console() -> Iterator[Console]:
         yield running
 
 
-class RememberedScreen(PlainScreen):
-    """Lets the test reach the screen that the console has made."""
-
-    newest: "RememberedScreen"
-
-    def start(self) -> None:
-        RememberedScreen.newest = self
-        super().start()
-
-
 # --- the page ------------------------------------------------------------------------------------------------------
 
 
@@ -151,12 +141,12 @@ def test_a_closed_console_leaves_nothing_behind() -> None:
     before = set(threading.enumerate())
     session = HandSession()
     for _ in range(3):
-        with running_console(session, screen_factory=RememberedScreen) as console, live_socket(console) as page:
+        with running_console(session) as console, live_socket(console) as page:
             assert page.recv(timeout=PATIENCE_S)
             with viser_socket(console) as scene:
                 assert scene.recv(timeout=PATIENCE_S)
                 console.close()
-        assert RememberedScreen.newest.closed
+        assert PlainScreen.newest.closed
         assert session.listeners == 0
         with pytest.raises(OSError, match="refused"):
             socket.create_connection(("127.0.0.1", int(console.addresses[0].rpartition(":")[2])), timeout=1)

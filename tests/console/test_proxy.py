@@ -41,16 +41,6 @@ def console() -> Iterator[Console]:
         yield running
 
 
-class RememberedScreen(PlainScreen):
-    """Lets the test reach the screen that the console has made."""
-
-    newest: "RememberedScreen"
-
-    def start(self) -> None:
-        RememberedScreen.newest = self
-        super().start()
-
-
 # --- viser behind it -----------------------------------------------------------------------------------------------
 
 
@@ -97,8 +87,8 @@ def camera() -> bytes:
 
 
 def test_visers_messages_pass_both_ways(start_console: StartConsole) -> None:
-    console = start_console(screen_factory=RememberedScreen)
-    screen = RememberedScreen.newest
+    console = start_console()
+    screen = PlainScreen.newest
     text = "å" * MEGABYTE
     with viser_socket(console) as page:
         assert page.subprotocol == VISER
@@ -111,10 +101,10 @@ def test_visers_messages_pass_both_ways(start_console: StartConsole) -> None:
 
 
 def test_a_big_scene_passes_in_one_piece(start_console: StartConsole) -> None:
-    console = start_console(screen_factory=RememberedScreen)
+    console = start_console()
     points = np.arange(3 * MEGABYTE, dtype=np.float32).reshape(-1, 3)
     with viser_socket(console) as page:
-        RememberedScreen.newest.server.scene.add_point_cloud("/cloud", points, colors=(1, 2, 3), precision="float32")
+        PlainScreen.newest.server.scene.add_point_cloud("/cloud", points, colors=(1, 2, 3), precision="float32")
         biggest = max(len(page.recv(timeout=PATIENCE_S)) for _ in range(3))
     assert biggest > points.nbytes
 

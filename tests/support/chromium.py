@@ -7,6 +7,7 @@ Playwright's synchronous interface keeps an event loop on the test's thread whil
 for one test module, and such a module cannot call ``asyncio.run`` itself.
 """
 
+import contextlib
 import os
 import re
 import shutil
@@ -15,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, expect, sync_playwright
 
 TABLET = (1280, 800)
 SMALL_TABLET = (1024, 768)
@@ -45,6 +46,9 @@ for (const kind of [self.WebGLRenderingContext, self.WebGL2RenderingContext]) {
 """A script for ``open_page``: all runs but the 3D draw calls, whose cost without a graphics card hides all else."""
 
 OpenPage = Callable[..., Page]
+
+PATIENCE_MS = 20_000
+expect.set_options(timeout=PATIENCE_MS)
 
 
 def chromium_path() -> str | None:
@@ -94,6 +98,20 @@ def open_page(chromium: Browser) -> Iterator[OpenPage]:
     ``allow`` are patterns of log lines that the test expects, ``script`` runs before the page's own. Further arguments
     go to the browser context. After the test every page is closed, and any other error in a page's log fails it.
     """
+    with clean_pages(chromium) as open_one:
+        yield open_one
+
+
+@pytest.fixture(scope="module")
+def open_shared_page(chromium: Browser) -> Iterator[OpenPage]:
+    """The same for a page that serves all tests of a module: opening viser's page costs a second."""
+    with clean_pages(chromium) as open_one:
+        yield open_one
+
+
+@contextlib.contextmanager
+def clean_pages(chromium: Browser) -> Iterator[OpenPage]:
+    """Opens pages, closes them at the end, and asserts then that their logs are clean."""
     contexts: list[BrowserContext] = []
     logs: list[PageLog] = []
 
@@ -110,7 +128,7 @@ def open_page(chromium: Browser) -> Iterator[OpenPage]:
             viewport={"width": size[0], "height": size[1]}, has_touch=touch, **context_options
         )
         contexts.append(context)
-        context.set_default_timeout(15_000)
+        context.set_default_timeout(PATIENCE_MS)
         if script:
             context.add_init_script(script)
         page = context.new_page()
@@ -118,9 +136,11 @@ def open_page(chromium: Browser) -> Iterator[OpenPage]:
         page.goto(url, wait_until="domcontentloaded")
         return page
 
-    yield open_one
-    for context in contexts:
-        context.close()
+    try:
+        yield open_one
+    finally:
+        for context in contexts:
+            context.close()
     errors = [error for log in logs for error in log.errors]
     assert not errors, "the page's log holds errors:\n" + "\n".join(errors)
 

@@ -36,9 +36,12 @@ StartConsole = Callable[..., Console]
 
 
 class PlainScreen:
-    """A screen with one text field, which remembers viser's server so that a test can write to it."""
+    """A screen with one text field. The newest one is remembered, so that a test reaches viser's server."""
+
+    newest: "PlainScreen"
 
     def __init__(self, server: viser.ViserServer, session: Session) -> None:
+        PlainScreen.newest = self
         self.server = server
         self.session = session
         self.came = threading.Event()

@@ -1,8 +1,9 @@
 """A session whose snapshots a test writes by hand, and snapshots to begin with."""
 
+import contextlib
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -23,7 +24,7 @@ from guidance_app.model import (
     TurnGuide,
 )
 
-__all__ = ["HandSession", "a_job", "driving"]
+__all__ = ["HandSession", "a_job", "driven", "driving"]
 
 STRAIGHT_NORTH = Pass(number=2, points=np.array([[0.0, -500.0], [0.0, 500.0]]), order=2)
 
@@ -127,3 +128,24 @@ class HandSession:
 
     def close(self) -> None:
         """Nothing to end."""
+
+
+@contextlib.contextmanager
+def driven(session: HandSession, make: Callable[[float, int], Snapshot], hertz: float = 10.0) -> Iterator[None]:
+    """Meanwhile an engine publishes ``make(session time, sequence)`` so many times a second, on its own thread."""
+    stop = threading.Event()
+
+    def drive() -> None:
+        sequence = 1
+        while not stop.wait(1.0 / hertz):
+            session.publish(make(session.now(), sequence))
+            sequence += 1
+
+    engine = threading.Thread(target=drive, name="engine")
+    session.publish(make(session.now(), 0))
+    engine.start()
+    try:
+        yield
+    finally:
+        stop.set()
+        engine.join()

@@ -1,0 +1,165 @@
+"""What a browser shows when the console freezes, dies, comes back, loses its picture or asks for a PIN."""
+
+import threading
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import CDPSession, Page, expect
+from support.chromium import PHONE, TABLET, WITHOUT_DRAWING, OpenPage, save_screenshot
+from support.console_process import ConsoleProcess, console_process
+from support.consoles import PlainScreen, StartConsole
+
+pytestmark = pytest.mark.browser
+
+SILENT_WITHIN_MS = 1000.0
+LOST = (r"ERR_CONNECTION_REFUSED", r"ERR_CONNECTION_RESET", r"ERR_EMPTY_RESPONSE", r"WebSocket")
+"""What a browser writes into its log while nobody answers."""
+UNAUTHORISED = r"status of 401"
+
+
+def in_state(page: Page, state: str, timeout_s: float = 15.0) -> None:
+    expect(page.locator("#lightbar")).to_have_attribute("data-state", state, timeout=timeout_s * 1000)
+
+
+@pytest.fixture(scope="module")
+def process() -> Iterator[ConsoleProcess]:
+    """A console that may be frozen and, by the last test that takes it, killed."""
+    with console_process() as running:
+        yield running
+
+
+def test_a_frozen_console_says_no_data_within_a_second_and_comes_back(
+    process: ConsoleProcess, open_page: OpenPage
+) -> None:
+    page = open_page(process.address, script=WITHOUT_DRAWING, allow=LOST)
+    in_state(page, "guide")
+    process.freeze()
+    in_state(page, "silent")
+    heard, silent = page.evaluate("[window.__lightbar.lastHeard, window.__lightbar.silentSince]")
+    assert silent - heard < SILENT_WITHIN_MS
+    assert page.evaluate("window.__lightbar.drawn.reason") == "NO DATA"
+    bar = page.locator("#lightbar")
+    assert bar.get_attribute("data-cross-track") == ""
+    assert bar.locator("canvas").get_attribute("aria-label") == "NO DATA"
+    assert bar.locator(".side.left").is_hidden()
+    save_screenshot(page, "bar-no-data")
+    page.wait_for_function("performance.now() - window.__lightbar.silentSince > 3500")
+    process.thaw()
+    in_state(page, "guide")
+    assert page.evaluate("window.__lightbar.connections") >= 2
+
+
+def test_a_console_that_was_started_anew_gets_a_fresh_page(process: ConsoleProcess, open_page: OpenPage) -> None:
+    page = open_page(process.address, script=WITHOUT_DRAWING, allow=LOST)
+    in_state(page, "guide")
+    page.evaluate("window.older = true")
+    process.end()
+    in_state(page, "silent")
+    with console_process(process.port):
+        page.wait_for_function("window.older === undefined && window.__lightbar?.state === 'guide'", timeout=30_000)
+        page.wait_for_selector("#root canvas")
+
+
+def test_a_lost_picture_starts_the_page_anew(start_console: StartConsole, open_page: OpenPage) -> None:
+    page = open_page(start_console().addresses[0], allow=(r"THREE.WebGLRenderer: Context Lost",))
+    page.wait_for_selector("#root canvas")
+    page.evaluate("window.older = true")
+    page.wait_for_function(
+        """() => {
+          const canvas = document.querySelector('#root canvas');
+          const context = canvas?.getContext('webgl2') ?? canvas?.getContext('webgl');
+          const loss = context?.getExtension('WEBGL_lose_context');
+          loss?.loseContext();
+          return Boolean(loss);
+        }"""
+    )
+    page.wait_for_function("window.older === undefined && window.__lightbar !== undefined")
+
+
+# --- the PIN -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("size", [TABLET, PHONE])
+def test_the_keypad_opens_the_console(start_console: StartConsole, open_page: OpenPage, size: tuple[int, int]) -> None:
+    console = start_console(lan=True, pin="480215")
+    page = open_page(console.addresses[0], size=size, touch=True, script=WITHOUT_DRAWING, allow=(UNAUTHORISED,))
+    save_screenshot(page, f"pin-{size[0]}x{size[1]}")
+    for key in page.locator(".keys button").all():
+        box = key.bounding_box()
+        assert box is not None
+        assert min(box["width"], box["height"]) >= 60
+    tap(page, "999999")
+    expect(page.locator(".message")).to_have_text("Wrong PIN. 4 tries left.")
+    tap(page, "48021")
+    page.get_by_role("button", name="Delete the last digit").tap()
+    tap(page, "15")
+    page.wait_for_function("window.__lightbar?.state === 'connecting'")
+    assert page.url == f"{console.addresses[0]}/"
+
+
+def test_after_too_many_wrong_pins_the_page_counts_down(start_console: StartConsole, open_page: OpenPage) -> None:
+    console = start_console(lan=True, pin="480215")
+    page = open_page(console.addresses[0], touch=True, allow=(UNAUTHORISED,))
+    for tries in (4, 3, 2, 1):
+        tap(page, "999999")
+        expect(page.locator(".message")).to_have_text(f"Wrong PIN. {tries} {'try' if tries == 1 else 'tries'} left.")
+    tap(page, "999999")
+    expect(page.locator(".message")).to_contain_text("Wait 5")
+    expect(page.locator("body")).to_have_class("waiting")
+
+
+def test_the_link_of_the_qr_code_needs_no_typing(start_console: StartConsole, open_page: OpenPage) -> None:
+    console = start_console(lan=True, pin="480215")
+    page = open_page(f"{console.addresses[0]}/?pin=480215", script=WITHOUT_DRAWING, allow=(UNAUTHORISED,))
+    page.wait_for_function("window.__lightbar?.state === 'connecting'")
+    assert page.url == f"{console.addresses[0]}/"
+
+
+def tap(page: Page, digits: str) -> None:
+    for digit in digits:
+        page.get_by_role("button", name=digit, exact=True).tap()
+
+
+# --- fingers on the ground -----------------------------------------------------------------------------------------
+
+
+class TappedScreen(PlainScreen):
+    """Hears taps on the ground."""
+
+    tapped = threading.Event()
+
+    def start(self) -> None:
+        super().start()
+        self.server.scene.add_box("/box", dimensions=(1, 1, 1))
+        self.server.scene.on_click()(lambda _: TappedScreen.tapped.set())
+
+
+def touch(session: CDPSession, kind: str, *points: tuple[float, float]) -> None:
+    session.send(
+        "Input.dispatchTouchEvent",
+        {"type": kind, "touchPoints": [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)]},
+    )
+
+
+def test_a_finger_taps_the_ground_and_a_swipe_does_not(start_console: StartConsole, open_page: OpenPage) -> None:
+    console = start_console(screen_factory=TappedScreen)
+    page = open_page(console.addresses[0], touch=True, script=WITHOUT_DRAWING)
+    page.wait_for_selector("#root canvas")
+    page.wait_for_function("window.__viserMutable?.nodeRefFromName?.['/box']")
+    finger = page.context.new_cdp_session(page)
+    assert tapped(finger, wobble=0.0, tries=10)
+    assert tapped(finger, wobble=9.0, tries=3)
+    assert not tapped(finger, wobble=40.0, tries=2)
+
+
+def tapped(finger: CDPSession, wobble: float, tries: int) -> bool:
+    """Whether the server hears of a finger that comes down, wanders so many pixels and goes up again."""
+    TappedScreen.tapped.clear()
+    for _ in range(tries):
+        touch(finger, "touchStart", (300.0, 500.0))
+        for part in (0.3, 0.6, 1.0):
+            touch(finger, "touchMove", (300.0 + part * wobble, 500.0))
+        touch(finger, "touchEnd")
+        if TappedScreen.tapped.wait(0.7):
+            return True
+    return False
