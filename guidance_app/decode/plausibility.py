@@ -9,7 +9,7 @@ Limits, with what made them: acceleration 15 m/s2 (an emergency stop of a car is
 between fixes of an autonomous receiver in the open); a pause of an hour is a new beginning.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, hypot, radians
 
 __all__ = ["Place", "Plausibility", "metres_between"]
@@ -17,6 +17,9 @@ __all__ = ["Place", "Plausibility", "metres_between"]
 MAX_ACCELERATION = 15.0
 HONEST_JUMP = 15.0
 UNKNOWN_SPEED = 40.0
+"""Of a receiver that reports no speed, until two fixes have told it; also the most that two fixes may tell."""
+LONGEST_STEP = 5.0
+"""Seconds over which two fixes still tell a speed."""
 MAX_SPEED = 150.0
 HONEST_SPEED_STEP = 10.0
 LONGEST_PAUSE = 3600.0
@@ -71,7 +74,7 @@ class Plausibility:
             self._doubted = place
             if self._agreeing < AGREEING:
                 return reason
-        self._last, self._doubted, self._agreeing = place, None, 0
+        self._last, self._doubted, self._agreeing = _with_speed(self._last, place), None, 0
         return None
 
     def believes_speed(self, t: float, speed: float) -> bool:
@@ -89,6 +92,17 @@ class Plausibility:
         return True
 
 
+def _with_speed(before: Place | None, place: Place) -> Place:
+    """The place with the speed at which it was reached, where the receiver reports none."""
+    if place.speed is not None or before is None or not 0.0 < place.t - before.t <= LONGEST_STEP:
+        return place
+    return replace(place, speed=min(_metres(before, place) / (place.t - before.t), UNKNOWN_SPEED))
+
+
+def _metres(before: Place, after: Place) -> float:
+    return metres_between((before.latitude_deg, before.longitude_deg), (after.latitude_deg, after.longitude_deg))
+
+
 def _contradiction(before: Place, after: Place) -> str | None:
     dt = after.t - before.t
     if not 0.0 < dt <= LONGEST_PAUSE:
@@ -96,8 +110,7 @@ def _contradiction(before: Place, after: Place) -> str | None:
     known = [place.speed for place in (before, after) if place.speed is not None]
     speed = max(known) if known else UNKNOWN_SPEED
     reach = HONEST_JUMP + speed * dt + MAX_ACCELERATION * dt * dt / 2.0
-    far = metres_between((before.latitude_deg, before.longitude_deg), (after.latitude_deg, after.longitude_deg))
-    return "implausible jump" if far > reach else None
+    return "implausible jump" if _metres(before, after) > reach else None
 
 
 def _speed_jumps(before: tuple[float, float], after: tuple[float, float]) -> bool:

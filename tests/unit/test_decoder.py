@@ -365,6 +365,11 @@ def test_a_wrong_sentence_with_a_right_checksum_does_not_move_the_tractor() -> N
     assert max(metres_apart(fix, fixes_of(observations)[0]) for fix in fixes_of(observations)) < 2.0
 
 
+def test_without_a_reported_speed_the_fixes_themselves_tell_what_is_a_jump() -> None:
+    observations = _at_once(b"".join(gga(NOON + k, float(k), 40.0 if k == 5 else 0.0) for k in range(8)))
+    assert rejections_of(observations) == ["implausible jump"]
+
+
 def test_a_true_jump_is_believed_at_the_third_fix_that_agrees() -> None:
     data = b"".join(gga(NOON + k / 10, k / 10, 0.0 if k < 10 else 900.0) for k in range(20))
     observations = _at_once(data)
