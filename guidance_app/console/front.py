@@ -30,7 +30,6 @@ __all__ = [
     "Asset",
     "Download",
     "Downloads",
-    "ServeViser",
     "front_app",
     "own_files",
     "patched_page",
