@@ -55,6 +55,10 @@ WHERE = (Z_EAST, Z_NORTH, ARM_FORWARD, ARM_RIGHT)
 """What an epoch put into a gap keeps of its neighbour's readings: nothing that is believed."""
 
 
+SHARP = (2.0, 0.3, 2.0)
+"""Acceleration noise, curvature and memory where the fixes contradict the motion model: the tractor did more there."""
+
+
 def smooth(measurements: Sequence[Measurement], settings: FilterSettings | None = None) -> tuple[Pose, ...]:
     """The smoothed pose of every measurement whose time is later than the one before; others are left out.
 
@@ -163,7 +167,8 @@ def _swept(first: Measurement, departure: Departure, epochs: _Epochs) -> tuple[F
         tape = forward(x, p, epochs.t, epochs.z, (epochs.models, epochs.common), sites)
         means, covariances = backward(tape)
         if sweep < SWEEPS - 1:
-            move_sites(epochs.z, means, covariances, sites)
+            wrong = move_sites(epochs.z, means, covariances, sites)
+            epochs.models[wrong > 0.0] = SHARP
             sites[~epochs.real, 2:] = 0.0
     return means, covariances
 

@@ -40,6 +40,8 @@ ROBUST = 9.0
 DAMPING = 0.7
 OUTLIER = 4.5
 """A fix this many standard deviations outside what all the others say is left out."""
+MOST_OUTLIERS = 2
+"""More than so many in a row are no outliers."""
 LOOSEST = 1e-3
 """The least information, in 1/m2, that a fix keeps."""
 
@@ -230,15 +232,18 @@ def first_sites(z: FloatArray, t: FloatArray) -> FloatArray:
 
 
 @numba.njit(cache=True)
-def move_sites(z: FloatArray, smooth: FloatArray, spreads: FloatArray, sites: FloatArray) -> None:
-    """One round of expectation propagation: every fix's site, in place, against what all the others say."""
+def move_sites(z: FloatArray, smooth: FloatArray, spreads: FloatArray, sites: FloatArray) -> FloatArray:
+    """One round of expectation propagation: every fix's site, in place, against what all the others say.
+
+    Gives shape (N,): 1 where the fixes contradict the motion model.
+    """
     n = spreads.shape[1]
     h = np.zeros(n)
     column = np.empty(n)
+    far = np.zeros(z.shape[0])
     for k in range(z.shape[0]):
         if z[k, WHITE] == 0.0:  # an epoch put into a gap: there is no fix
             continue
-        out = False
         for axis in range(2):
             cell = z[k, CELL_EAST + axis]
             white = z[k, WHITE] ** 2
@@ -250,12 +255,33 @@ def move_sites(z: FloatArray, smooth: FloatArray, spreads: FloatArray, sites: Fl
                 continue
             held = (mean / variance - (sites[k, axis] / sites[k, at] if sites[k, at] > 0.0 else 0.0)) / others
             doubt = math.sqrt(1.0 / others + white)
-            away = z[k, Z_EAST + axis] - held
-            out = out or abs(away) - 0.5 * cell > OUTLIER * doubt
+            away = max(abs(z[k, Z_EAST + axis] - held) - 0.5 * cell, 0.0)
+            far[k] = max(far[k], away / doubt)
             _move_site(sites[k], axis, (z[k, Z_EAST + axis], cell, white), (held, 1.0 / others))
-        if out:
-            sites[k, SITE_VARIANCE] = 0.0
-            sites[k, SITE_VARIANCE + 1] = 0.0
+    return _leave_out(z, far, sites)
+
+
+@numba.njit(cache=True)
+def _leave_out(z: FloatArray, far: FloatArray, sites: FloatArray) -> FloatArray:
+    """Leaves out the fixes that are ``far``, in standard deviations, from what all the others say, in place.
+
+    More than two of them in a row are not outliers: there the motion model is wrong, and they stay.
+    """
+    real = np.flatnonzero(z[:, WHITE] > 0.0)
+    wrong = np.zeros(z.shape[0])
+    run = 0
+    for i in range(real.size + 1):
+        if i < real.size and far[real[i]] > OUTLIER:
+            run += 1
+            continue
+        if run <= MOST_OUTLIERS:
+            for j in range(i - run, i):
+                sites[real[j], SITE_VARIANCE] = 0.0
+                sites[real[j], SITE_VARIANCE + 1] = 0.0
+        else:
+            wrong[real[max(i - run - 2, 0)] : real[min(i + 1, real.size - 1)] + 1] = 1.0
+        run = 0
+    return wrong
 
 
 @numba.njit(cache=True)
