@@ -24,8 +24,11 @@ SLOWEST = 0.3
 FADING = 1.5
 """The predicted curvature fades with this time constant in seconds."""
 ARC_STEP = 0.1
-TRACK_WINDOW = 2.5
-"""The swept track is fitted over this many seconds."""
+TRACK_WINDOW = 1.2
+"""The swept track is fitted over this many seconds: its bend is known half of that late, and 2.5 s is worse in a meander
+than going straight on."""
+FEWEST = 4
+"""But over no fewer poses than this, for a receiver of 1 Hz."""
 LONGEST_GAP = 2.0
 
 
@@ -83,11 +86,12 @@ class _Swept:
             if pose.t == kept[-1].t:
                 return self
             kept = ()
-        return _Swept((*(p for p in kept if p.t >= pose.t - TRACK_WINDOW), pose))
+        old = sum(p.t < pose.t - TRACK_WINDOW for p in kept)
+        return _Swept((*kept[min(old, max(0, len(kept) - FEWEST + 1)) :], pose))
 
 
 class Predictor:
-    """Looks ahead from each pose in turn. Remembers the track of the last 2.5 s, which one of the two ways needs."""
+    """Looks ahead from each pose in turn. Remembers the last seconds' track, which one of the two ways needs."""
 
     def __init__(self, settings: FilterSettings | None = None, way: Way = Way.FILTER) -> None:
         self._settings = settings or FilterSettings()
@@ -125,7 +129,7 @@ def _carried_on(swept: tuple[Pose, ...], seconds: float) -> tuple[Pose, FloatArr
     newest = swept[-1]
     t = np.array([p.t - newest.t for p in swept])
     track = np.array([(p.east - newest.east, p.north - newest.north) for p in swept])
-    degree = 2 if len(swept) >= 4 else 1
+    degree = 2 if len(swept) >= FEWEST else 1
     curve = _fitted(t, track, degree)
     times = np.linspace(0.0, seconds, max(2, math.ceil(seconds / ARC_STEP)) + 1)
     powers = times[:, np.newaxis] ** np.arange(degree + 1)
