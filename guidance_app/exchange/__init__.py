@@ -1,7 +1,7 @@
 """Field files of other programs: one format a file here, found by the ending in ``READERS`` and ``WRITERS``.
 
-A reader takes bytes and gives drafts; whatever the format, a draft becomes a field in ``boundary`` alone. A reader
-therefore neither repairs nor judges, and a writer gets only what has been checked.
+A reader takes bytes and gives at least one draft, or raises ``BoundaryError``; whatever the format, a draft becomes a
+field in ``boundary`` alone. A reader therefore neither repairs nor judges, and a writer gets only what was checked.
 """
 
 from collections.abc import Callable, Mapping
@@ -45,9 +45,6 @@ def checked_fields(path: Path) -> tuple[CheckedField, ...]:
     except BoundaryError as error:
         msg = f"{path}: {error}"
         raise ExchangeError(msg) from error
-    if not fields:
-        msg = f"{path}: there is no field in it"
-        raise ExchangeError(msg)
     return fields
 
 

@@ -133,6 +133,9 @@ def sample_drive(job: Job) -> SampleDrive:
     end, begin = passes[-1].points, passes[0].points
     turner = Turner(Room(polygon, request.body), request)
     turn = turner.turns(_pose(end[-2], end[-1], end[-1]), _pose(begin[0], begin[1], begin[0]))[0]
+    if turn is None:
+        msg = "the sample field has no room for the way back to its first pass"
+        raise SourceError(msg)
     return SampleDrive(frame, passes, tuple(_transfer(leg, passes[0].number) for leg in turn.legs))
 
 

@@ -368,3 +368,33 @@ def test_migrations_follow_each_other_in_the_order_of_versions() -> None:
         assert decoded(json.dumps(members).encode(), Plough, migrations) == wanted
     with pytest.raises(StoreError, match="version 1 is older than this program can lift"):
         decoded(b'{"schema_version": 1}', Plough, {("plough", 2): in_metres})
+
+
+def test_a_rename_to_the_same_name_changes_nothing(store: Store) -> None:
+    revision = store.save(tractor_named("T"))
+    assert store.rename(Tractor, "T", " T ") == revision
+
+
+def test_a_name_that_is_taken_again_keeps_its_archive(store: Store) -> None:
+    store.save(tractor_named("T"))
+    store.archive(Tractor, "T")
+    store.save(tractor_named("T", 3.0))
+    with pytest.raises(StoreError, match="rename that first"):
+        store.unarchive(store.archived(Tractor)[0])
+    store.archive(Tractor, "T")
+    assert {path.name for path in (store.root / "archive" / "tractors").iterdir()} == {"t.json", "t-2.json"}
+
+
+def test_a_file_that_may_not_be_read_is_named_and_left_alone(store: Store) -> None:
+    place = store.root / "tractors" / "folder.json"
+    place.mkdir(parents=True)
+    assert store.list(Tractor) == ()
+    assert "folder.json cannot be read" in store.problems[0].sentence
+    assert place.is_dir()
+
+
+def test_a_repaired_file_that_was_set_aside_says_how_it_comes_back(store: Store) -> None:
+    aside = store.root / "tractors" / "t.json.broken"
+    aside.parent.mkdir(parents=True)
+    aside.write_bytes(encoded(tractor_named("T")))
+    assert "take '.broken' off its name" in store.problems[0].sentence
