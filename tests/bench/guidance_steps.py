@@ -1,7 +1,7 @@
 """What one step of tracker and coverage costs.
 
-Run in ``tests``: ``python -m bench.guidance_steps``. Processor time, so that a busy machine does not count. The tracker follows each line with a winding course, works on
-it, and turns beyond it; the coverage works a field of 10 hours at 12 m.
+Run in ``tests``: ``python -m bench.guidance_steps``. Processor time, so that a busy machine does not count. The tracker
+works along lines and plans and idles between them; the coverage works a field of 10 hours at 12 m.
 """
 
 import math
@@ -9,7 +9,6 @@ import time
 from collections.abc import Callable, Iterable
 
 import numpy as np
-
 from support.passes import a_plan, a_pose, a_segment, drive_plan, poses_along, round_trip, rounded_ring
 
 from guidance_app.guidance.coverage import Coverage
