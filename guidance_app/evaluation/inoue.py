@@ -84,7 +84,7 @@ def field_run(seed: int, outlier_share: float = 0.0) -> FieldRun:
         rate=RATE_HZ,
     )
     driven = np.concatenate(([0.0], np.cumsum(truth.speed[:-1] / RATE_HZ)))
-    on_pass = (np.mod(driven, period) < PASS_LENGTH) & (truth.speed > 1)
+    on_pass = (np.mod(driven, period) < PASS_LENGTH) & (truth.speed > 1) & (driven < PASSES * period)
     return FieldRun(truth, _sensed(truth, random, outlier_share), np.where(on_pass, np.floor(driven / period), -1.0))
 
 
