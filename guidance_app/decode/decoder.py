@@ -151,12 +151,14 @@ class Decoder:
             case kind if kind in ADDED_KINDS:
                 self._take_added(sentence, arrival, out)
             case "ZDA":
+                self._hear(arrival)
                 self._learn_date(sentence)
             case "PSXN,20":
+                self._hear(arrival)
                 self._heading_valid = sentence.heading_valid is not False
                 self._attitude_valid = sentence.attitude_valid is not False
             case "GSV":
-                pass
+                self._hear(arrival)
             case _:
                 self._take_attitude(sentence, arrival, out)
 
@@ -239,6 +241,12 @@ class Decoder:
         if epoch is None or arrival >= epoch.heard + QUIET * self.interval:
             return None
         return epoch
+
+    def _hear(self, arrival: float) -> None:
+        """A sentence that adds nothing to a fix is no silence either: slow lines carry many before the next RMC."""
+        epoch = self._listening(arrival)
+        if epoch is not None:
+            epoch.heard = max(epoch.heard, arrival)
 
     def _open(self, time: float | None, arrival: float) -> Epoch:
         expected = self._habits.begin_epoch()
@@ -345,5 +353,6 @@ class Decoder:
         return True
 
     def _reject(self, arrival: float, line: str, reason: str, out: list[Observation]) -> None:
+        self._hear(arrival)
         self._rejected[reason] += 1
         out.append(Rejected(arrival, line, reason))

@@ -5,6 +5,8 @@ import os
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from support.nmea import epoch, fixes_of, gga, hdt, observations_of, sentence
 
 from guidance_app.cli import main
@@ -61,6 +63,32 @@ def test_the_command_says_it_and_ends_with_status_2(
     assert said.err.count("\n") == 1
     assert "Traceback" not in said.err
     assert sorted(one.name for one in tmp_path.iterdir()) == ["run.nmea"]
+
+
+PARTS = [
+    GOOD[:200],
+    b"$GPGGA,",
+    b"$KSXT,2020",
+    b"\xff\xfe",
+    b"\x1f\x8b",
+    b"$",
+    b"\n",
+    b"2020-01-02T12:00:00 $",
+    b"\x00" * 9,
+]
+
+
+@given(st.lists(st.sampled_from(PARTS) | st.binary(max_size=40), max_size=12).map(b"".join))
+def test_any_bytes_are_a_log_or_are_refused(tmp_path_factory: pytest.TempPathFactory, data: bytes) -> None:
+    path = _file(tmp_path_factory.getbasetemp(), data)
+    try:
+        log = load_log(path)
+    except SourceError as error:
+        said = str(error)
+    else:
+        said = f"{log.has_fix}, {log.duration}"
+        assert len(log.chunks) > 0
+    assert said
 
 
 def test_a_missing_file_a_folder_and_a_pipe_are_named(tmp_path: Path) -> None:

@@ -226,6 +226,21 @@ def test_a_slow_sentence_does_not_hold_up_the_epochs_between() -> None:
     assert all(closed_at_once[30:])
 
 
+def test_a_slow_line_full_of_satellites_does_not_part_an_epoch() -> None:
+    """4800 baud: between GGA and RMC half a second of GSV goes by, longer than the silence that closes an epoch."""
+    satellites = sentence("GPGSV,3,1,10,02,25,181,42,06,45,146,45,12,19,292,47,13,17,209,43,1") * 4
+    decoder, found = Decoder(), []
+    for k in range(10):
+        arrival = float(k)
+        for line in (gga(NOON + k) + satellites + rmc(NOON + k)).splitlines(keepends=True):
+            arrival += len(line) / 480.0
+            found += decoder.feed(Chunk(arrival - 0.01, b""))
+            found += decoder.feed(Chunk(arrival, line))
+    fixes = fixes_of(found)
+    assert len(fixes) == 10
+    assert all(fix.speed is not None for fix in fixes)
+
+
 def test_a_lost_sentence_costs_one_silence_and_not_the_rhythm() -> None:
     decoder = Decoder()
     found: list[Observation] = []
