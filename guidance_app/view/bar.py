@@ -194,7 +194,7 @@ def _fix_text(snapshot: Snapshot, fix_age: float | None, state: BarState) -> str
 def _age_text(age: float) -> str:
     if age < 1.0:
         return "<1 s"
-    return f"{age:.0f} s" if age < 100 else f"{age / 60:.0f} min"
+    return f"{int(age)} s" if age < 100 else f"{int(age / 60)} min"
 
 
 def _steering(snapshot: Snapshot, pose: Pose, guidance: Guidance, now: float, settings: Settings) -> Steering:
