@@ -9,9 +9,9 @@ in this order:
 3. Where the implement is lowered off the target, a pass within half a spacing and along the heading is meant, done or
    not, if it is nearer by a fifth of a spacing.
 4. A pass not yet done that is nearer by a fifth of a spacing and within 30 degrees of the heading, for a second and
-   two metres, takes over. Against a plan's order that is under way it has to be so for three seconds and ten metres,
-   and not on the planned way to the target: a lap's square corner or a way along another pass is not a wish to drive
-   that one.
+   two metres, takes over. If it is not the next of a plan's order under way, it has to be so for three seconds and
+   ten metres: a lap's square corner or a way along another pass is not a wish to drive that one. On the planned way
+   to the target nothing takes over.
 """
 
 import copy
@@ -119,12 +119,16 @@ class Choice:
             self._better, self._better_since = nearest, (seen.t, seen.east, seen.north)
             return key
         since, east, north = self._better_since
-        under_way = self.itinerary.planned_direction and progress.begun
-        seconds, metres = SETTLED_AGAINST_PLAN if under_way else SETTLED
+        seconds, metres = SETTLED_AGAINST_PLAN if self._against_order(nearest, key, progress) else SETTLED
         if seen.t - since < seconds or math.hypot(seen.east - east, seen.north - north) < metres:
             return key
         self._better = None
         return nearest
+
+    def _against_order(self, nearest: int, key: int, progress: Progress) -> bool:
+        if not (self.itinerary.planned_direction and progress.begun):
+            return False
+        return nearest != self.itinerary.following(key, progress.done, 0)
 
     def _nearest_along(self, seen: Seen, key: int, without: Set[int]) -> tuple[float, int | None]:
         """Distance and key of the nearest other pass along the heading, within a spacing."""

@@ -22,7 +22,8 @@ COME, STAY = 0.5, 0.8
 
 
 CALM = 1.0
-"""Metres: nearer to its exit nobody comes on a pass, and so far before its entry nobody leaves it again."""
+"""Metres (on a short pass a quarter of it): nearer to its exit nobody comes on a pass, and so far before its entry
+nobody leaves it again."""
 
 
 class Seen(NamedTuple):
@@ -72,8 +73,9 @@ class Reader:
         rest = line.polyline.length - foot.along
         along, to_end = (rest, foot.along) if against else (foot.along, rest)
         axis = off_axis(seen.heading, foot.direction)
-        after_entry = along - self.behind >= (-CALM if was_on else 0.0)
-        before_exit = to_end + self.behind >= (0.0 if was_on else CALM)
+        calm = min(CALM, 0.25 * line.polyline.length)
+        after_entry = along - self.behind >= (-calm if was_on else 0.0)
+        before_exit = to_end + self.behind >= (0.0 if was_on else calm)
         between = line.target.closed or line.target.endless or (after_entry and before_exit)
         near = abs(foot.cross) <= (STAY if was_on else COME) * self.spacing
         return Reading(
