@@ -1,13 +1,12 @@
 """What a browser shows when the console freezes, dies, comes back, loses its picture or asks for a PIN."""
 
-import threading
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import CDPSession, Page, expect
+from playwright.sync_api import Page, expect
 from support.chromium import PHONE, TABLET, WITHOUT_DRAWING, OpenPage, save_screenshot
 from support.console_process import ConsoleProcess, console_process
-from support.consoles import PlainScreen, StartConsole
+from support.consoles import StartConsole
 
 pytestmark = pytest.mark.browser
 
@@ -118,48 +117,3 @@ def test_the_link_of_the_qr_code_needs_no_typing(start_console: StartConsole, op
 def tap(page: Page, digits: str) -> None:
     for digit in digits:
         page.get_by_role("button", name=digit, exact=True).tap()
-
-
-# --- fingers on the ground -----------------------------------------------------------------------------------------
-
-
-class TappedScreen(PlainScreen):
-    """Hears taps on the ground."""
-
-    tapped = threading.Event()
-
-    def start(self) -> None:
-        super().start()
-        self.server.scene.add_box("/box", dimensions=(1, 1, 1))
-        self.server.scene.on_click()(lambda _: TappedScreen.tapped.set())
-
-
-def touch(session: CDPSession, kind: str, *points: tuple[float, float]) -> None:
-    session.send(
-        "Input.dispatchTouchEvent",
-        {"type": kind, "touchPoints": [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)]},
-    )
-
-
-def test_a_finger_taps_the_ground_and_a_swipe_does_not(start_console: StartConsole, open_page: OpenPage) -> None:
-    console = start_console(screen_factory=TappedScreen)
-    page = open_page(console.addresses[0], touch=True, script=WITHOUT_DRAWING)
-    page.wait_for_selector("#root canvas")
-    page.wait_for_function("window.__viserMutable?.nodeRefFromName?.['/box']")
-    finger = page.context.new_cdp_session(page)
-    assert tapped(finger, wobble=0.0, tries=10)
-    assert tapped(finger, wobble=9.0, tries=3)
-    assert not tapped(finger, wobble=40.0, tries=2)
-
-
-def tapped(finger: CDPSession, wobble: float, tries: int) -> bool:
-    """Whether the server hears of a finger that comes down, wanders so many pixels and goes up again."""
-    TappedScreen.tapped.clear()
-    for _ in range(tries):
-        touch(finger, "touchStart", (300.0, 500.0))
-        for part in (0.3, 0.6, 1.0):
-            touch(finger, "touchMove", (300.0 + part * wobble, 500.0))
-        touch(finger, "touchEnd")
-        if TappedScreen.tapped.wait(0.7):
-            return True
-    return False
