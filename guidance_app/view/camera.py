@@ -31,7 +31,7 @@ NEAR, FAR = 0.3, 3000.0
 UPRIGHT = 0.8
 """A window narrower than this against its height is a phone's."""
 
-SHEET = 0.32
+SHEET = 0.38
 """The share of a phone's window that the panels cover from below."""
 
 HEADING_EASE = 0.35
@@ -158,8 +158,8 @@ def camera_home(mode: ViewMode, *, width: float, extent: Extent, aspect: float) 
 
 def _behind(distance: float, covered: float) -> CameraHome:
     """Over the driver's shoulder, ``distance`` from the tractor; it looks lower where the window's foot is covered."""
-    back, height = 0.88 * distance, 0.48 * distance
-    return CameraHome((-back, 0.0, height), ((0.62 - 1.6 * covered) * distance, 0.0, 0.0), NEAR, FAR)
+    back, height = 0.88 * distance, (0.48 - 0.16 * covered) * distance
+    return CameraHome((-back, 0.0, height), ((0.62 - 1.35 * covered) * distance, 0.0, 0.0), NEAR, FAR)
 
 
 def _above(height: float, *, ahead: float) -> CameraHome:

@@ -93,7 +93,9 @@ def working_edge(implement: Implement, place: Place) -> Segments:
     half = implement.working_width / 2
     cuts = np.linspace(half, -half, implement.sections + 1)
     gap = min(0.12, implement.working_width / implement.sections / 8) if implement.sections > 1 else 0.0
-    ends = np.stack([cuts[:-1] - gap, cuts[1:] + gap], axis=1)
+    ends = np.stack([cuts[:-1], cuts[1:]], axis=1)
+    ends[1:, 0] -= gap
+    ends[:-1, 1] += gap
     edge = np.full((implement.sections, 2, 3), Z_EDGE, dtype=np.float32)
     for side in (0, 1):
         edge[:, side, :2] = place.of(np.column_stack([np.zeros(implement.sections), ends[:, side]]))

@@ -1,7 +1,8 @@
 """Snapshots of a field at work, built by hand, and a session whose clock a test sets."""
 
 import math
-from dataclasses import dataclass, field, replace
+import threading
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,7 @@ from support.sessions import HandSession
 __all__ = ["FIELD", "TREES", "SetSession", "field_job", "field_snapshot", "straight_passes", "strip", "trail"]
 
 ORIGIN_DEG = (47.5, 8.5)
+PATIENCE_S = 10.0
 FIELD = np.array([[0.0, 0.0], [120.0, 0.0], [150.0, 200.0], [0.0, 180.0], [0.0, 0.0]])
 TREES = np.array([[60.0, 80.0], [70.0, 80.0], [70.0, 90.0], [60.0, 90.0], [60.0, 80.0]])
 
@@ -131,16 +133,24 @@ def field_snapshot(
     return replace(snapshot, **members)
 
 
-@dataclass(init=False)
 class SetSession(HandSession):
-    """A session whose clock stands where the test has set it."""
-
-    instant: float = field(default=100.0)
+    """A session whose clock stands where the test has set it, in ``instant``."""
 
     def __init__(self, snapshot: Snapshot, job: Job | None = None) -> None:
         super().__init__(first=snapshot)
         self.job = job or field_job()
         self.instant = snapshot.arrival
+        self._posted = threading.Condition()
+
+    def post(self, command: object) -> None:
+        with self._posted:
+            super().post(command)
+            self._posted.notify_all()
+
+    def until_posted(self, command: object) -> None:
+        """Waits for this command."""
+        with self._posted:
+            assert self._posted.wait_for(lambda: command in self.commands, PATIENCE_S), f"{command} was not posted"
 
     def now(self) -> float:
         return self.instant
