@@ -1,6 +1,7 @@
 """``guidance-app tune``: find Q and R of the four-state filter on simulated paths or on one's own recordings."""
 
 import argparse
+import math
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -8,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from guidance_app.estimation.filter import QuantisationSettings
+from guidance_app.estimation.filter import FilterSettings, QuantisationSettings
 from guidance_app.evaluation.cluster import ClusterError, cluster_search
+from guidance_app.evaluation.model_tuning import KINDS, ModelObjective, model_search, model_settings
 from guidance_app.evaluation.objectives import (
     Objective,
     TuningError,
@@ -62,6 +64,12 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "--processes", type=_count, default=os.cpu_count() or 1, help="processes of the Monte Carlo (all cores)"
     )
     parser.add_argument("--scheduler", metavar="ADDRESS", help="run the Monte Carlo on this Dask scheduler, tcp://...")
+    parser.add_argument(
+        "--models",
+        choices=tuple(KINDS),
+        help="tune the adaptive filter's motion models for this kind of input instead; takes minutes",
+    )
+    parser.add_argument("--seeds", type=_count, default=8, help="runs of each scenario for --models (8)")
     parser.add_argument("--out", type=Path, metavar="SETTINGS.json", help="write the filter settings here")
     parser.set_defaults(func=run)
 
@@ -76,6 +84,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _tune(arguments: argparse.Namespace) -> int:
+    if arguments.models is not None:
+        return _tune_models(arguments)
     logs: Sequence[Path] = arguments.log or ()
     objective = _objective(logs, straight_only=arguments.straight_only)
     search = _search(arguments)
@@ -87,10 +97,33 @@ def _tune(arguments: argparse.Namespace) -> int:
         print(f"stopped after {found.evaluations:,} evaluations; the best so far is kept")
     for line in _report(objective, found, arguments):
         print(line)
-    written = _written(found, arguments.out)
+    written = _written(settings_from(found.noise), arguments.out)
     if logs and not stopped:
         _validate(objective, search)
     return written
+
+
+def _tune_models(arguments: argparse.Namespace) -> int:
+    """The adaptive filter's motion models for one kind of input."""
+    if arguments.log:
+        msg = "--models is tuned on simulated paths with their truth; leave --log away"
+        raise TuningError(msg)
+    kind = arguments.models
+    objective = ModelObjective(kind, arguments.seeds)
+    found, stopped = _watched(model_search(objective))
+    if found is None:
+        print("tune: stopped before the first result; nothing is kept", file=sys.stderr)
+        return 130
+    if stopped:
+        print(f"stopped after {found.evaluations:,} evaluations; the best so far is kept")
+    settings = model_settings(kind, found.noise)
+    print("models  " + "  ".join(f"{value:.4g}" for value in found.noise.tolist()))
+    for title, chosen in (("tuned", settings), ("present", FilterSettings())):
+        for (name, rate), score in objective.scores(chosen).items():
+            heading = math.degrees(score.heading_rms or 0.0)
+            honest = 100 * (score.within_ellipse or 0.0)
+            print(f"{title:<8} {name:<16} {rate:g} Hz  {100 * score.rms:6.2f} cm  {heading:5.2f} deg  {honest:3.0f} %")
+    return _written(settings, arguments.out)
 
 
 def _objective(logs: Sequence[Path], *, straight_only: bool) -> Objective:
@@ -190,11 +223,11 @@ def _listed(values: FloatArray) -> str:
     return "  ".join(f"{value:.4g}" for value in values.tolist())
 
 
-def _written(found: Found, out: Path | None) -> int:
+def _written(settings: FilterSettings, out: Path | None) -> int:
     if out is None:
         return 0
     try:
-        out.write_text(settings_from(found.noise).model_dump_json(indent=2) + "\n", encoding="utf-8")
+        out.write_text(settings.model_dump_json(indent=2) + "\n", encoding="utf-8")
     except OSError as error:
         print(f"tune: cannot write {out}: {error.strerror}", file=sys.stderr)
         return 1

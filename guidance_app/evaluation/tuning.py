@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from dataclasses import dataclass
 from multiprocessing import get_context
+from typing import Any
 
 import numpy as np
 
@@ -34,6 +35,7 @@ __all__ = [
     "chunks_of",
     "cma_search",
     "cross_validation",
+    "new_search",
     "noise_of",
     "random_search",
     "settings_from",
@@ -122,15 +124,9 @@ def random_search(objective: Objective, chunks: Sequence[Chunk], processes: int 
 
 def cma_search(objective: Objective, seed: int = int(Purpose.TUNING)) -> Iterator[Found]:
     """The best so far after each generation of CMA-ES, started at the paper's equation 14."""
-    try:
-        import cma  # noqa: PLC0415 - an extra
-    except ModuleNotFoundError as error:
-        msg = "the optimiser cma is not installed; pip install 'guidance-app[tune]', or take --method random"
-        raise OptimiserMissingError(msg) from error
     first = noise_of(QuantisationSettings())
     start = first[8:]
-    options = {"seed": seed, "verbose": -9, "bounds": list(LOG_BOUNDS), "maxfevals": EVALUATIONS, "verb_log": 0}
-    search = cma.CMAEvolutionStrategy(np.log(first[:8]), 1.5, {**options, "tolfun": 1e-7, "tolx": 1e-4})
+    search = new_search(np.log(first[:8]), 1.5, LOG_BOUNDS, EVALUATIONS, seed)
     best = Found(first, objective.rms(first), 1, EVALUATIONS)
     yield best
     while not search.stop():
@@ -144,6 +140,23 @@ def cma_search(objective: Objective, seed: int = int(Purpose.TUNING)) -> Iterato
             noise, least = np.concatenate([np.exp(asked[winner]), start]), rms[winner]
         best = Found(noise, least, done, max(EVALUATIONS, done))
         yield best
+
+
+def new_search(
+    start: FloatArray,
+    step: float,
+    bounds: tuple[float, float] | tuple[FloatArray, FloatArray],
+    evaluations: int,
+    seed: int,
+) -> Any:
+    """A CMA-ES search with ``ask``, ``tell`` and ``stop``. Raises :class:`OptimiserMissingError` without cma."""
+    try:
+        import cma  # noqa: PLC0415 - an extra
+    except ModuleNotFoundError as error:
+        msg = "the optimiser cma is not installed; pip install 'guidance-app[tune]', or take --method random"
+        raise OptimiserMissingError(msg) from error
+    options = {"seed": seed, "verbose": -9, "bounds": list(bounds), "maxfevals": evaluations, "verb_log": 0}
+    return cma.CMAEvolutionStrategy(start, step, {**options, "tolfun": 1e-7, "tolx": 1e-4})
 
 
 @dataclass(frozen=True, slots=True)
