@@ -30,6 +30,9 @@ TURNED_AWAY = math.radians(60)
 LEFT = math.radians(30)
 """Turned so far from a done pass with the implement up, the tractor has left it."""
 
+AT_END = 1.0
+"""Metres: so near the end of a done pass, with the implement up, the pass is over."""
+
 ALONG = math.radians(30)
 """Another pass is considered only when the tractor points along it within this."""
 
@@ -55,6 +58,7 @@ class Choice:
         self.spacing = spacing
         self.held = False
         self.engaged = False
+        self._engaged_against = False
         self._was_working = False
         self._better: int | None = None
         self._better_since = (0.0, 0.0, 0.0)
@@ -76,7 +80,7 @@ class Choice:
         if self.engaged and not _lap_closed(reading.line, progress):
             self._better = None
             return key
-        if _is_done(reading.line, progress) and not self.held and (self.engaged or _has_left(reading)):
+        if _is_done(reading.line, progress) and not self.held and (self.engaged or self._has_left(reading)):
             self.engaged = False
             following = self.itinerary.following(key, progress.done, side or _turned_to(reading))
             return key if following is None else following
@@ -90,10 +94,17 @@ class Choice:
     def _engage(self, seen: Seen, reading: Reading) -> None:
         if reading.on_pass:
             self.held = False
-        if not seen.working or reading.off_axis > TURNED_AWAY:
+        turned_round = self.engaged and reading.against != self._engaged_against
+        if not seen.working or reading.off_axis > TURNED_AWAY or turned_round:
             self.engaged = False
         elif reading.on_pass:
-            self.engaged = True
+            self.engaged, self._engaged_against = True, reading.against
+
+    def _has_left(self, reading: Reading) -> bool:
+        """The done target: at its end, turned away, or turned round on the spot."""
+        target = reading.line.target
+        at_end = not target.closed and not target.endless and reading.to_end <= AT_END
+        return at_end or reading.off_axis > LEFT or reading.against != self._engaged_against
 
     def _on_the_way(self, seen: Seen, key: int) -> bool:
         way = self.itinerary.way_to(key)
@@ -155,11 +166,6 @@ def _turned_to(reading: Reading) -> int:
     """+1 when the tractor has turned to the side where numbers grow, -1 to the other."""
     turned = math.sin(reading.heading_error) * (-1.0 if reading.against else 1.0)
     return 1 if turned >= 0 else -1
-
-
-def _has_left(reading: Reading) -> bool:
-    beyond = not reading.line.target.closed and not reading.line.target.endless and reading.to_end <= 0
-    return beyond or reading.off_axis > LEFT
 
 
 def _lap_closed(line: GuideLine, progress: Progress) -> bool:

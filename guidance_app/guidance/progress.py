@@ -8,7 +8,7 @@ import bisect
 import itertools
 import math
 
-__all__ = ["Progress", "enough"]
+__all__ = ["SHORTEST", "Progress", "enough"]
 
 DONE_FRACTION = 0.9
 """A pass counts as done when this much of its length has been worked."""
@@ -21,6 +21,9 @@ JOINED = 0.5
 
 MOST_STRETCHES = 64
 """More stretches of one pass than this are joined across their smallest gap: bounded memory."""
+
+SHORTEST = 3.0
+"""Metres; a stretch that is shorter counts as done when it is driven along, for nobody can lower an implement on it."""
 
 
 def enough(length: float) -> float:

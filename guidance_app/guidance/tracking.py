@@ -17,7 +17,7 @@ from guidance_app.guidance.itinerary import FamilyItinerary, GuideLine, Itinerar
 from guidance_app.guidance.learning import DrivenPass
 from guidance_app.guidance.offsets import LineOffsets
 from guidance_app.guidance.polyline import Foot, Polyline
-from guidance_app.guidance.progress import Progress, enough
+from guidance_app.guidance.progress import SHORTEST, Progress, enough
 from guidance_app.guidance.reading import ALIGNED, COME, STAY, Reader, Reading, Seen
 from guidance_app.guidance.travel import TravelDirection, drives_against
 from guidance_app.model import FloatArray, Guidance, OffsetKind, OffsetRecord, Pass, Plan, Pose, TurnGuide
@@ -171,6 +171,9 @@ class Tracker:
             wanted = line.work_length
             if wanted is not None and 0 < enough(wanted) <= self._progress.worked(line.key):
                 self._progress.finish(line.key)
+        short = not line.target.endless and line.polyline.length < SHORTEST
+        if short and beside and reading.foot.distance <= self._spacing and reading.to_end <= reading.along:
+            self._progress.finish(line.key)
         self._work_from = along if seen.working and beside else None
 
     # --- the pass ---------------------------------------------------------------------------------------------------
