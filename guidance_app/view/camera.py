@@ -152,14 +152,14 @@ def camera_home(mode: ViewMode, *, width: float, extent: Extent, aspect: float) 
             return _above(height, ahead=-covered * height * up)
         case ViewMode.WHOLE_FIELD:
             across_m, up_m = extent.size
-            height = 1.12 * max(up_m / (up * (1 - covered)), across_m / across) / 2
+            height = 1.16 * max(up_m / (up * (1 - covered)), across_m / across) / 2
             return _above(height, ahead=-covered * height * up)
 
 
 def _behind(distance: float, covered: float) -> CameraHome:
     """Over the driver's shoulder, ``distance`` from the tractor; it looks lower where the window's foot is covered."""
     back, height = 0.88 * distance, (0.48 - 0.16 * covered) * distance
-    return CameraHome((-back, 0.0, height), ((0.62 - 1.35 * covered) * distance, 0.0, 0.0), NEAR, FAR)
+    return CameraHome((-back, 0.0, height), ((0.62 - 1.35 * covered) * distance, 0.0, 0.0), 0.06 * distance, FAR)
 
 
 def _above(height: float, *, ahead: float) -> CameraHome:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from guidance_app.model import FloatArray, Snapshot
 from guidance_app.view.camera import Extent, extent_of
-from guidance_app.view.polyline import Segments, closed_ring, segments, thinned
+from guidance_app.view.polyline import Segments, closed_ring, cut, segments, thinned
 
 __all__ = ["Mesh", "everything", "exclusion_mesh", "ground_mesh", "mainland_strokes", "ring_strokes"]
 
@@ -57,14 +57,14 @@ def _triangles(polygons: Iterable[shapely.Polygon], z: float) -> Mesh | None:
 
 def ring_strokes(rings: Sequence[FloatArray]) -> Segments:
     """The edges of these rings as strokes, thinned to 2 cm."""
-    drawn = [segments(thinned(closed_ring(ring), RING_TOLERANCE), Z_BOUNDARY) for ring in rings]
+    drawn = [segments(cut(thinned(closed_ring(ring), RING_TOLERANCE)), Z_BOUNDARY) for ring in rings]
     return np.concatenate(drawn) if drawn else np.empty((0, 2, 3), np.float32)
 
 
 def mainland_strokes(snapshot: Snapshot) -> Segments:
     """The line between headland and mainland; empty without a plan or without a headland."""
     parts = snapshot.plan.mainland if snapshot.plan is not None else ()
-    drawn = [segments(thinned(closed_ring(ring), RING_TOLERANCE), Z_MAINLAND) for part in parts for ring in part]
+    drawn = [segments(cut(thinned(closed_ring(ring), RING_TOLERANCE)), Z_MAINLAND) for part in parts for ring in part]
     return np.concatenate(drawn) if drawn else np.empty((0, 2, 3), np.float32)
 
 

@@ -4,7 +4,18 @@ import numpy as np
 
 from guidance_app.model import FloatArray
 
-__all__ = ["Segments", "along", "closed_ring", "dashed", "lengths", "point_at", "segments", "stretched", "thinned"]
+__all__ = [
+    "Segments",
+    "along",
+    "closed_ring",
+    "cut",
+    "dashed",
+    "lengths",
+    "point_at",
+    "segments",
+    "stretched",
+    "thinned",
+]
 
 Segments = np.ndarray[tuple[int, ...], np.dtype[np.float32]]
 """Shape (M, 2, 3): begin and end of each stroke."""
@@ -51,6 +62,18 @@ def along(points: FloatArray, east: float, north: float) -> tuple[float, float]:
     gap = np.hypot(*(start + share[:, None] * step - (east, north)).T)
     k = int(np.argmin(gap))
     return float(lengths(points)[k] + share[k] * np.sqrt(square[k])), float(gap[k])
+
+
+def cut(points: FloatArray, longest: float = 40.0) -> FloatArray:
+    """The same line with a point at least every ``longest`` metres.
+
+    A stroke that begins far behind the camera is drawn at a wrong depth, and sinks into the ground.
+    """
+    run = lengths(points)
+    counts = np.maximum(np.ceil(np.diff(run) / longest).astype(int), 1)
+    steps = [np.linspace(run[k], run[k + 1], count, endpoint=False) for k, count in enumerate(counts)]
+    places = np.concatenate([*steps, run[-1:]])
+    return np.column_stack([np.interp(places, run, points[:, 0]), np.interp(places, run, points[:, 1])])
 
 
 def stretched(points: FloatArray, metres: float) -> FloatArray:

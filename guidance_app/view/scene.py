@@ -18,7 +18,7 @@ from guidance_app.view.bar import STALE_AFTER_S, TURN_NOW_S, TURN_SOON_S
 from guidance_app.view.camera import ViewMode
 from guidance_app.view.colours import Palette, Rgb, vertex_source
 from guidance_app.view.numerals import painted
-from guidance_app.view.polyline import Segments, along, closed_ring, dashed, point_at, segments, stretched, thinned
+from guidance_app.view.polyline import Segments, along, closed_ring, cut, dashed, point_at, segments, stretched, thinned
 
 __all__ = [
     "MOST_NUMBERS",
@@ -37,7 +37,7 @@ __all__ = [
 
 Z_LINES, Z_NUMBERS, Z_TARGET = 0.10, 0.11, 0.12
 
-ENDLESS_REACH = 2000.0
+ENDLESS_REACH = 1000.0
 """An endless line is drawn this far beyond its points."""
 
 CURVE_TOLERANCE = 0.03
@@ -111,7 +111,7 @@ def drawn_points(line: Pass) -> FloatArray:
 
 def pass_strokes(line: Pass, z: float = Z_TARGET) -> Segments:
     """The strokes of one pass."""
-    return segments(drawn_points(line), z)
+    return segments(cut(drawn_points(line)), z)
 
 
 def pass_lines(passes: Sequence[Pass], guidance: Guidance | None, palette: Palette) -> Lines:
@@ -130,7 +130,7 @@ def pass_lines(passes: Sequence[Pass], guidance: Guidance | None, palette: Palet
         if state is PassState.NEXT:
             piece = _lifted(dashed(points, DASH_ON, DASH_OFF), Z_LINES)
         else:
-            piece = segments(points, Z_LINES)
+            piece = segments(cut(points), Z_LINES)
         strokes.append(piece)
         colours += [vertex_source(colour_of[state])] * len(piece)
     return _lines(strokes, colours)
@@ -168,7 +168,7 @@ def number_layout(mode: ViewMode, camera_distance: float) -> NumberLayout:
     """Sizes follow the camera's distance, so that a number looks equally large near and far."""
     d = camera_distance
     if mode is ViewMode.DRIVER:
-        return NumberLayout(ahead=0.95 * d, every=1.2 * d, size=0.05 * d, stretch=2.2, most=9, reach=1.3 * d)
+        return NumberLayout(ahead=1.25 * d, every=0.8 * d, size=0.05 * d, stretch=2.2, most=9, reach=1.3 * d)
     if mode is ViewMode.WHOLE_FIELD:
         return NumberLayout(ahead=0.0, every=1.0, size=0.0145 * d, stretch=1.0, most=MOST_NUMBERS)
     return NumberLayout(ahead=0.16 * d, every=0.32 * d, size=0.015 * d, stretch=1.0, most=17, reach=d)

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from PIL import Image
 from playwright.sync_api import Page, expect
-from support.chromium import PHONE, SIZES, SMALL_TABLET, TABLET, OpenPage, save_screenshot
+from support.chromium import PHONE, SIZES, SMALL_TABLET, TABLET, WITHOUT_DRAWING, OpenPage, save_screenshot
 from support.consoles import running_console
 from support.snapshots import SetSession, field_job, field_snapshot, strip, trail
 
 from guidance_app.console.screen import Screen
 from guidance_app.console.server import Console
 from guidance_app.model import SetWorkMode, SkipPass, Snapshot, WorkMode
-from guidance_app.view.colours import DAY, NIGHT, Palette, Rgb
+from guidance_app.view.colours import DAY, NIGHT, Rgb
 
 pytestmark = pytest.mark.browser
 
@@ -108,27 +108,22 @@ def test_the_scene_is_there_at_every_size(drive: Drive, open_page: OpenPage, siz
     save_screenshot(page, f"scene_{size[0]}x{size[1]}")
 
 
-@pytest.mark.parametrize(("words", "palette"), [("Day", DAY), ("Night", NIGHT)])
-def test_the_ground_has_its_true_colours_by_day_and_night(
-    drive: Drive, open_page: OpenPage, words: str, palette: Palette
-) -> None:
+def test_the_ground_has_its_true_colours_by_day_and_night(drive: Drive, open_page: OpenPage) -> None:
     page = with_scene(open_page(drive.address, size=TABLET, touch=True))
     page.get_by_text("Views", exact=True).tap()
     page.get_by_text("Whole field", exact=True).tap()
-    page.get_by_role("button", name=words).tap()
-    dark = "dark" if palette is NIGHT else "light"
-    page.wait_for_selector(f'html[data-mantine-color-scheme="{dark}"]', state="attached")
-    settled(page)
-    assert colour_share(page, palette.soil) > 0.08
-    assert colour_share(page, palette.meadow, 20) > 0.2
-    save_screenshot(page, f"whole_field_{words.lower()}")
-    page.get_by_role("button", name="Day").tap()
-    page.wait_for_selector('html[data-mantine-color-scheme="light"]', state="attached")
+    for words, palette, scheme in (("Night", NIGHT, "dark"), ("Day", DAY, "light")):
+        page.get_by_role("button", name=words).tap()
+        page.wait_for_selector(f'html[data-mantine-color-scheme="{scheme}"]', state="attached")
+        settled(page)
+        assert colour_share(page, palette.soil) > 0.08
+        assert colour_share(page, palette.meadow) > 0.2
+        save_screenshot(page, f"whole_field_{words.lower()}")
 
 
 @pytest.mark.parametrize("size", SIZES, ids=lambda size: f"{size[0]}x{size[1]}")
 def test_the_whole_field_is_in_sight(drive: Drive, open_page: OpenPage, size: tuple[int, int]) -> None:
-    page = with_scene(open_page(drive.address, size=size, touch=True))
+    page = with_scene(open_page(drive.address, size=size, touch=True, script=WITHOUT_DRAWING))
     if size == PHONE:
         page.get_by_text("Work · Views · Info").tap()
     page.get_by_text("Views", exact=True).tap()
@@ -142,7 +137,7 @@ def test_the_whole_field_is_in_sight(drive: Drive, open_page: OpenPage, size: tu
 
 
 def test_a_finger_turns_the_view_and_one_button_brings_it_back(drive: Drive, open_page: OpenPage) -> None:
-    page = with_scene(open_page(drive.address, size=SMALL_TABLET))
+    page = with_scene(open_page(drive.address, size=SMALL_TABLET, script=WITHOUT_DRAWING))
     place = "() => window.__viserMutable.camera.position.toArray()"
     home = page.evaluate(place)
     box = page.locator(CANVAS).bounding_box()
@@ -159,7 +154,7 @@ def test_a_finger_turns_the_view_and_one_button_brings_it_back(drive: Drive, ope
 
 
 def test_buttons_are_large_enough_for_a_thumb_and_reach_the_session(drive: Drive, open_page: OpenPage) -> None:
-    page = with_scene(open_page(drive.address, size=SMALL_TABLET, touch=True))
+    page = with_scene(open_page(drive.address, size=SMALL_TABLET, touch=True, script=WITHOUT_DRAWING))
     for words, command in (("Skip", SkipPass()), ("Speed", SetWorkMode(WorkMode.SPEED))):
         button = page.get_by_role("button", name=words)
         box = button.bounding_box()
@@ -171,7 +166,7 @@ def test_buttons_are_large_enough_for_a_thumb_and_reach_the_session(drive: Drive
 
 
 def test_the_tractor_stays_where_it_is_on_the_screen_while_the_world_moves(drive: Drive, open_page: OpenPage) -> None:
-    page = with_scene(open_page(drive.address, size=TABLET))
+    page = with_scene(open_page(drive.address, size=TABLET, script=WITHOUT_DRAWING))
     before = seen_at(page, "/w/here")
     world = "() => window.__viserMutable.nodeRefFromName['/w'].position.toArray()"
     stood = page.evaluate(world)

@@ -17,9 +17,9 @@ from guidance_app.model import LinkState, Pose, Snapshot, TurnGuide, WorkMode
 
 CENTIMETRE = 1e-2
 TICK_S = 0.04
-MOST_BYTES_A_TICK = 700
-MOST_BYTES_A_FIX = 8_000
-MOST_JOIN_BYTES = 400_000
+MOST_BYTES_A_TICK = 300
+MOST_BYTES_A_FIX = 6_000
+MOST_JOIN_BYTES = 120_000
 
 
 @pytest.fixture

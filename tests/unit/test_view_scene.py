@@ -16,7 +16,7 @@ from guidance_app.view.camera import ViewMode
 from guidance_app.view.colours import DAY, vertex_source
 from guidance_app.view.field import everything, exclusion_mesh, ground_mesh, mainland_strokes, ring_strokes
 from guidance_app.view.numerals import painted
-from guidance_app.view.polyline import along, dashed, lengths, point_at, segments, stretched, thinned
+from guidance_app.view.polyline import along, cut, dashed, lengths, point_at, segments, stretched, thinned
 from guidance_app.view.scene import (
     MOST_NUMBERS,
     PassState,
@@ -34,7 +34,9 @@ from guidance_app.view.scene import (
 MILLIMETRE = 1e-3
 CENTIMETRE = 1e-2
 SQUARE_CENTIMETRE = 1e-4
-LINES = arrays(float, st.tuples(st.integers(2, 30), st.just(2)), elements=st.floats(-200, 200))
+LINES = arrays(
+    float, st.tuples(st.integers(2, 30), st.just(2)), elements=st.integers(-2000, 2000).map(lambda tenths: tenths / 10)
+)
 
 
 # --- field ---------------------------------------------------------------------------------------------------------
@@ -99,6 +101,15 @@ def test_a_place_along_a_line_is_found_again(points: np.ndarray, share: float) -
     assert gap == pytest.approx(0.0, abs=MILLIMETRE)
 
 
+@given(LINES.filter(lambda points: float(lengths(points)[-1]) > 1.0), st.floats(1.0, 90.0))
+def test_cutting_a_line_leaves_it_where_it_was(points: np.ndarray, longest: float) -> None:
+    finer = cut(points, longest)
+    assert np.hypot(*np.diff(finer, axis=0).T).max() <= longest + MILLIMETRE
+    assert float(lengths(finer)[-1]) == pytest.approx(float(lengths(points)[-1]), abs=CENTIMETRE)
+    line = shapely.LineString(points)
+    assert max(line.distance(shapely.Point(point)) for point in finer) < MILLIMETRE
+
+
 def test_strokes_join_the_points() -> None:
     strokes = segments(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0]]), 0.5)
     assert strokes.tolist() == [[[0, 0, 0.5], [1, 0, 0.5]], [[1, 0, 0.5], [1, 2, 0.5]]]
@@ -123,15 +134,16 @@ def test_all_passes_are_one_array_with_a_colour_for_each_end() -> None:
     assert tuple(lines.colours[0, 0]) == vertex_source(DAY.pass_done)
     dashes = (lines.colours[:, 0] == vertex_source(DAY.pass_next)).all(axis=1).sum()
     assert dashes > 10
-    assert len(lines.points) == 11 + dashes
+    assert len(lines.points) == 11 * 4 + dashes
     assert len(pass_lines((), None, DAY).points) == 0
 
 
 def test_a_lap_is_closed_and_an_endless_line_is_long() -> None:
     square = np.array([[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0]])
     assert len(pass_strokes(Pass(1, square, closed=True))) == 4
+    assert np.abs(np.diff(pass_strokes(field_snapshot().passes[0]), axis=1)).max() <= 40.0
     endless = pass_strokes(Pass(0, square[:2], endless=True))
-    assert np.ptp(endless[..., 0]) > 4000
+    assert np.ptp(endless[..., 0]) > 2000
 
 
 # --- numbers -------------------------------------------------------------------------------------------------------
