@@ -117,3 +117,19 @@ def test_the_link_of_the_qr_code_needs_no_typing(start_console: StartConsole, op
 def tap(page: Page, digits: str) -> None:
     for digit in digits:
         page.get_by_role("button", name=digit, exact=True).tap()
+
+
+def test_a_console_started_anew_on_a_network_asks_for_its_new_pin(
+    start_console: StartConsole, open_page: OpenPage
+) -> None:
+    first = start_console(lan=True, pin="480215")
+    port = int(first.addresses[0].rpartition(":")[2])
+    link = f"{first.addresses[0]}/?pin=480215"
+    page = open_page(link, touch=True, script=WITHOUT_DRAWING, allow=(*LOST, UNAUTHORISED))
+    page.wait_for_function("window.__lightbar?.state === 'connecting'")
+    first.close()
+    in_state(page, "silent")
+    start_console(lan=True, pin="111222", port=port)
+    expect(page.locator(".keys")).to_be_visible()
+    tap(page, "111222")
+    page.wait_for_function("window.__lightbar?.state === 'connecting'")
