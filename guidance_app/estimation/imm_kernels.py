@@ -28,7 +28,7 @@ from guidance_app.estimation.observation_kernels import (
     GYRO,
     MEASUREMENTS,
     STANDING,
-    VELOCITY_EAST,
+    VELOCITY_ALONG,
     WHITE,
     Z_EAST,
     Z_NORTH,
@@ -83,7 +83,7 @@ def _sensors(x: FloatArray, p: FloatArray, n: int, z: FloatArray) -> float:
     """
     h = np.zeros(n)
     likelihood = 0.0
-    for which in range(VELOCITY_EAST, MEASUREMENTS):
+    for which in range(VELOCITY_ALONG, MEASUREMENTS):
         innovation, variance = observe(x, z, which, h)
         if variance == 0.0:
             continue

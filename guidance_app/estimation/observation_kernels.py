@@ -45,8 +45,9 @@ READINGS = 16
 NO_COURSE = 1000.0
 """In place of a course: the receiver gave a speed alone."""
 
-POSITION_EAST, POSITION_NORTH, VELOCITY_EAST, VELOCITY_NORTH, STANDING, GYRO, COMPASS = range(7)
-"""The seven measurements."""
+POSITION_EAST, POSITION_NORTH, VELOCITY_ALONG, VELOCITY_ACROSS, STANDING, GYRO, COMPASS = range(7)
+"""The seven measurements. The velocity is taken along and across the body, so that one that is far off along it, in a
+hard stop, can be doubted without turning the heading."""
 MEASUREMENTS = 7
 
 
@@ -67,14 +68,15 @@ def antenna(x: FloatArray, z: FloatArray, axis: int, h: FloatArray) -> float:
 
 
 @numba.njit(cache=True)
-def antenna_velocity(x: FloatArray, z: FloatArray, axis: int, h: FloatArray) -> float:
-    """How fast the antenna should be read to move along this axis; ``h`` becomes the derivative of that."""
-    sine = math.sin(x[HEADING])
-    cosine = math.cos(x[HEADING])
+def antenna_velocity(x: FloatArray, z: FloatArray, direction: float, h: FloatArray) -> float:
+    """How fast the antenna should be read to move along ``direction``; ``h`` becomes the derivative of that.
+
+    With the body's velocity u (sin, cos) and the swing u k of the lever arm.
+    """
+    along = math.cos(x[HEADING] - direction)
+    across = -math.sin(x[HEADING] - direction)
     k = x[CURVATURE]
     u = x[SPEED]
-    along = sine if axis == EAST else cosine
-    across = cosine if axis == EAST else -sine
     swing = z[ARM_FORWARD] * across - z[ARM_RIGHT] * along
     h[:] = 0.0
     h[SPEED] = along + k * swing
@@ -88,17 +90,18 @@ def observe(x: FloatArray, z: FloatArray, which: int, h: FloatArray) -> tuple[fl
     """Innovation and variance of one of the seven measurements; ``h`` becomes its derivative by the state.
 
     A variance of zero says that there is no such measurement. The position's is that of its scatter, without the cell.
+    The gyro's derivative by the speed is left out on purpose: at the sudden end of a turn the rate falls to nothing,
+    and the product of speed and curvature would as soon stop the tractor as straighten its path.
     """
     if which <= POSITION_NORTH:
         return z[Z_EAST + which] - antenna(x, z, which, h), z[WHITE] ** 2
-    if which <= VELOCITY_NORTH:
-        return _velocity(x, z, which - VELOCITY_EAST, h)
+    if which <= VELOCITY_ACROSS:
+        return _velocity(x, z, which, h)
     h[:] = 0.0
     if which == STANDING:
         h[SPEED] = 1.0
         return -x[SPEED], z[STANDING_SD] ** 2
     if which == GYRO:
-        h[SPEED] = x[CURVATURE]
         h[CURVATURE] = x[SPEED]
         h[GYRO_BIAS] = 1.0
         return z[GYRO_READING] - x[SPEED] * x[CURVATURE] - x[GYRO_BIAS], z[GYRO_SD] ** 2
@@ -111,13 +114,14 @@ def observe(x: FloatArray, z: FloatArray, which: int, h: FloatArray) -> tuple[fl
 
 
 @numba.njit(cache=True)
-def _velocity(x: FloatArray, z: FloatArray, axis: int, h: FloatArray) -> tuple[float, float]:
+def _velocity(x: FloatArray, z: FloatArray, which: int, h: FloatArray) -> tuple[float, float]:
     """As ``observe``; a speed without a course is taken once, along the body, forward or back as the state has it."""
     if z[COURSE_READING] < NO_COURSE:
-        read = z[SPEED_READING] * (math.sin(z[COURSE_READING]) if axis == EAST else math.cos(z[COURSE_READING]))
-        return read - antenna_velocity(x, z, axis, h), z[SPEED_SD] ** 2
+        direction = x[HEADING] if which == VELOCITY_ALONG else x[HEADING] + 0.5 * math.pi
+        read = z[SPEED_READING] * math.cos(z[COURSE_READING] - direction)
+        return read - antenna_velocity(x, z, direction, h), z[SPEED_SD] ** 2
     h[:] = 0.0
     h[SPEED] = 1.0
-    if axis == NORTH:
+    if which == VELOCITY_ACROSS:
         return 0.0, 0.0
     return math.copysign(z[SPEED_READING], x[SPEED]) - x[SPEED], z[SPEED_SD] ** 2

@@ -25,8 +25,8 @@ FADING = 1.5
 """The predicted curvature fades with this time constant in seconds."""
 ARC_STEP = 0.1
 TRACK_WINDOW = 1.2
-"""The swept track is fitted over this many seconds: its bend is known half of that late, and 2.5 s is worse in a meander
-than going straight on."""
+"""The swept track is fitted over this many seconds: its bend is known half of that late, and 2.5 s is worse in a
+meander than going straight on."""
 FEWEST = 4
 """But over no fewer poses than this, for a receiver of 1 Hz."""
 LONGEST_GAP = 2.0

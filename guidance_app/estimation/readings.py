@@ -34,7 +34,10 @@ def common_noise(z: Measurement, noise: ReceiverNoise, settings: AdaptiveSetting
 
 
 def readings(z: Measurement, noise: ReceiverNoise, settings: AdaptiveSettings, bound: float | None) -> FloatArray:
-    """The epoch as a reading vector; ``bound`` is the standing tractor's, see ``stillness``."""
+    """The epoch as a reading vector; ``bound`` is the standing tractor's, see ``stillness``.
+
+    Standing is a better reading than the few centimetres a second that a receiver shows at rest, and replaces them.
+    """
     cell_east, cell_north = z.cell or (DEFAULT_CELL, DEFAULT_CELL)
     gyro = z.yaw_rate if z.yaw_rate is not None and abs(z.yaw_rate) < FASTEST_GYRO else None
     return np.array(
@@ -49,7 +52,7 @@ def readings(z: Measurement, noise: ReceiverNoise, settings: AdaptiveSettings, b
             settings.gate,
             z.speed or 0.0,
             NO_COURSE if z.course is None else z.course,
-            0.0 if z.speed is None else settings.velocity_noise,
+            0.0 if z.speed is None or bound is not None else settings.velocity_noise,
             gyro or 0.0,
             0.0 if gyro is None else settings.gyro_noise,
             z.heading or 0.0,

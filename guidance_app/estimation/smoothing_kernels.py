@@ -27,8 +27,8 @@ from guidance_app.estimation.observation_kernels import (
     CELL_EAST,
     COMPASS,
     MEASUREMENTS,
-    VELOCITY_EAST,
-    VELOCITY_NORTH,
+    VELOCITY_ACROSS,
+    VELOCITY_ALONG,
     WHITE,
     Z_EAST,
     antenna,
@@ -88,7 +88,7 @@ def forward(
             if variance == 0.0:
                 continue
             total = projected(p, h, column) + variance
-            if which in (VELOCITY_EAST, VELOCITY_NORTH, COMPASS):
+            if which in (VELOCITY_ALONG, VELOCITY_ACROSS, COMPASS):
                 total = max(total, innovation * innovation / ROBUST)
             taken[k, which, 0] = innovation
             taken[k, which, 1] = total

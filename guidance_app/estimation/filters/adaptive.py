@@ -32,7 +32,6 @@ from guidance_app.estimation.filter import AdaptiveSettings, Filter, FilterSetti
 from guidance_app.estimation.imm_kernels import (
     MODELS,
     REOPENED,
-    SHARPEST,
     WITH_POSITION,
     WITHOUT_POSITION,
     Belief,
@@ -55,6 +54,7 @@ from guidance_app.estimation.kernels import (
 from guidance_app.estimation.readings import common_noise, readings, slip_of
 from guidance_app.estimation.receiver_noise import DEFAULT_CELL, ReceiverNoise, fix_covariance, noise_of
 from guidance_app.estimation.reference_point import offset_point
+from guidance_app.estimation.refused import Refused, is_lost, step_of
 from guidance_app.estimation.starting import Departure, Waiting
 from guidance_app.estimation.stillness import Stillness
 from guidance_app.model import FloatArray, Measurement, Pose
@@ -62,15 +62,10 @@ from guidance_app.model import FloatArray, Measurement, Pose
 __all__ = ["Adaptive"]
 
 LONGEST_GAP = 10.0
-DEAD_RECKONED = 5
-LOST_FIXES = 3
-STEP_FIXES = 4
-STEP_SCATTER = 0.15
 LONGEST_BACKING = 30.0
 HEADING_LOST = math.radians(35)
 """With a heading less certain than this the screen says that the direction is unknown."""
 STANDING_SPEED = 0.06
-FASTEST = 20.0
 GYRO_BIAS_SD = 0.01
 
 
@@ -86,17 +81,8 @@ class _State:
     n: int
     still: Stillness
     pose: Pose
-    rejected: "tuple[_Refused, ...]" = ()
+    rejected: tuple[Refused, ...] = ()
     backed: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class _Refused:
-    """A fix that the gate refused, and how far east and north of the expected place it was."""
-
-    z: Measurement
-    east: float
-    north: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +118,7 @@ class Adaptive:
             memory = _after_gap(memory, z)
         if isinstance(memory, _State):
             memory = _advanced(memory, z, noise, self._settings.adaptive)
-            if _is_lost(memory.rejected):
+            if is_lost(memory.rejected):
                 memory = _lost(memory)
         if isinstance(memory, _State):
             self._memory = memory
@@ -240,29 +226,6 @@ def _after_gap(state: _State, z: Measurement) -> "_State | _Before":
     return replace(_lost(state), waiting=Waiting(), still=Stillness.of(z), pointed=None)
 
 
-def _is_lost(rejected: tuple[_Refused, ...]) -> bool:
-    """Whether it is the filter that is wrong, not the receiver.
-
-    So it is when refused fixes follow each other as a tractor moves, ever farther from what was expected; and when
-    there are more than may be dead-reckoned over.
-    """
-    if len(rejected) > DEAD_RECKONED:
-        return True
-    if len(rejected) < LOST_FIXES:
-        return False
-    one, two, three = rejected[-LOST_FIXES:]
-    first, second = two.z.t - one.z.t, three.z.t - two.z.t
-    bend = math.hypot(
-        (three.z.east - two.z.east) / second - (two.z.east - one.z.east) / first,
-        (three.z.north - two.z.north) / second - (two.z.north - one.z.north) / first,
-    )
-    speed = math.hypot(three.z.east - one.z.east, three.z.north - one.z.north) / (first + second)
-    drawn_away = math.hypot(three.east - one.east, three.north - one.north)
-    cell = max(three.z.cell or (DEFAULT_CELL,))
-    even = bend * min(first, second) < STEP_SCATTER + 2.0 * cell + 0.5 * SHARPEST * (first + second) ** 2
-    return even and speed < FASTEST and drawn_away > STEP_SCATTER + cell
-
-
 def _lost(state: _State) -> _Before:
     """What remains when the filter is lost: the gyro's bias, and the refused fixes, which tell where it really is."""
     x, p, w = state.belief
@@ -298,13 +261,13 @@ def _advanced(state: _State, z: Measurement, noise: ReceiverNoise, settings: Ada
 
 def _corrected(
     state: _State, z: Measurement, dt: float, epoch: FloatArray, motion: Motion
-) -> tuple[Belief, tuple[_Refused, ...]]:
+) -> tuple[Belief, tuple[Refused, ...]]:
     """The new belief, and the fixes rejected in a row until now."""
     belief, report = imm_step(state.belief, state.n, dt, epoch, WITH_POSITION, motion)
     if report[0] == 1.0:
         return belief, ()
-    rejected = (*state.rejected, _Refused(z, float(report[2]), float(report[3])))
-    stepped = _step_of(rejected)
+    rejected = (*state.rejected, Refused(z, float(report[2]), float(report[3])))
+    stepped = step_of(rejected)
     if stepped is not None and state.n == STATES:
         shifted, report = imm_step(_shifted(state.belief, stepped), state.n, dt, epoch, WITH_POSITION, motion)
         if report[0] == 1.0:
@@ -340,17 +303,6 @@ def _with_drift(state: _State, z: Measurement, noise: ReceiverNoise) -> _State:
         p[:, DRIFT_EAST, DRIFT_EAST] = noise.drift**2
         p[:, DRIFT_NORTH, DRIFT_NORTH] = noise.drift**2
     return replace(state, belief=(x, p, w), n=n)
-
-
-def _step_of(rejected: tuple[_Refused, ...]) -> tuple[float, float] | None:
-    """The receiver's step, if the last four rejected fixes agree on one."""
-    last = rejected[-STEP_FIXES:]
-    if len(last) < STEP_FIXES:
-        return None
-    east = sum(fix.east for fix in last) / STEP_FIXES
-    north = sum(fix.north for fix in last) / STEP_FIXES
-    agree = all(math.hypot(fix.east - east, fix.north - north) < STEP_SCATTER for fix in last)
-    return (east, north) if agree else None
 
 
 def _shifted(belief: Belief, step: tuple[float, float]) -> Belief:
