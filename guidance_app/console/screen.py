@@ -107,7 +107,8 @@ class Screen:
 
     def _arrive(self, handle: viser.ClientHandle) -> None:
         with self._lock:
-            self._arrived.append(handle)
+            if not self._stop.is_set():
+                self._arrived.append(handle)
 
     def _leave(self, handle: viser.ClientHandle) -> None:
         with self._lock:

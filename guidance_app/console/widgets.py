@@ -31,19 +31,19 @@ HELD_S = 1.2
 """So long after a finger the program leaves a widget alone."""
 
 STYLE = """<style>
-.g-tiles{display:grid;grid-template-columns:repeat(4,1fr);gap:.35em .3em;padding:.1em .6em .35em;
+.g-tiles{display:grid;grid-template-columns:repeat(4,1fr);gap:.35em .3em;padding:0 .6em .15em;
  font-variant-numeric:tabular-nums}
 .g-tile{min-width:0;line-height:1.12}
 .g-tile i{font-style:normal;display:block;font-size:.56em;color:var(--mantine-color-dimmed);white-space:nowrap}
 .g-tile b{font-size:1.12em;font-weight:650;letter-spacing:-.02em;white-space:nowrap}
 .g-tile s{text-decoration:none;font-size:.58em;color:var(--mantine-color-dimmed);margin-left:.2em;white-space:nowrap}
-.g-words{padding:.1em .75em .45em;font-size:.72em;white-space:nowrap;overflow:hidden;text-overflow:ellipsis}
+.g-words{padding:0 .75em .25em;font-size:.72em;white-space:nowrap;overflow:hidden;text-overflow:ellipsis}
 .g-words::before{content:"";display:inline-block;width:.62em;height:.62em;border-radius:50%;margin-right:.5em}
 .g-good::before{background:#2f9e44}.g-fair::before{background:#f08c00}
 .g-bad::before{background:#e03131;border-radius:0}.g-off::before{background:#868e96}
 .g-notice{margin:.1em .6em .45em;padding:.3em .6em;font-size:.66em;line-height:1.3;border-radius:.3em;
  border-left:.25em solid #f08c00;background:rgba(240,140,0,.13)}
-.g-line .g-notice{white-space:nowrap;overflow:hidden;text-overflow:ellipsis}
+.g-line .g-notice{margin:0 .9em .25em;padding:.05em .6em;white-space:nowrap;overflow:hidden;text-overflow:ellipsis}
 .g-rows{padding:.1em 1.1em .5em .75em;font-size:.74em;line-height:1.55;font-variant-numeric:tabular-nums}
 .g-rows div{display:flex;justify-content:space-between;gap:1em}
 .g-rows i{font-style:normal;color:var(--mantine-color-dimmed);white-space:nowrap}
@@ -82,11 +82,11 @@ def notice_html(notices: Iterable[str]) -> str:
 
 
 def notice_line_html(notices: Sequence[str]) -> str:
-    """The first thing to know on one line, and how many more there are."""
+    """The first thing to know on one line, and how many there are; all of them are in the info panel."""
     if not notices:
         return ""
-    more = f" (and {len(notices) - 1} more: Info)" if len(notices) > 1 else ""
-    return f'<div class="g-line">{notice_html([notices[0] + more])}</div>'
+    which = f"(1 of {len(notices)}) " if len(notices) > 1 else ""
+    return f'<div class="g-line">{notice_html([which + notices[0]])}</div>'
 
 
 def rows_html(rows: Iterable[tuple[str, str]]) -> str:
