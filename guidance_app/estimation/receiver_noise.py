@@ -26,7 +26,7 @@ class ReceiverNoise:
 
 _BY_QUALITY = {
     FixQuality.NONE: ReceiverNoise(1.0, 5.0, 60.0),
-    FixQuality.AUTONOMOUS: ReceiverNoise(0.05, 1.0, 300.0),
+    FixQuality.AUTONOMOUS: ReceiverNoise(0.03, 0.7, 1000.0),
     FixQuality.DGPS: ReceiverNoise(0.03, 0.18, 70.0),
     FixQuality.PPS: ReceiverNoise(0.03, 0.18, 70.0),
     FixQuality.RTK_FIXED: ReceiverNoise(0.008, 0.0, 1.0),
