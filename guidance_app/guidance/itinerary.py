@@ -179,7 +179,7 @@ POINTS_A_PIECE = 32
 class PlanOrder:
     """What a plan's itineraries share, however far they are moved."""
 
-    passes: tuple[Pass, ...]
+    lines: tuple[GuideLine, ...]
     ways: tuple[Path | None, ...]
     tree: shapely.STRtree
     piece_keys: tuple[int, ...]
@@ -200,36 +200,29 @@ class PlanItinerary:
 
     @staticmethod
     def of(plan: Plan) -> "PlanItinerary":
-        """``ValueError`` for a plan without a pass."""
+        """``ValueError`` for a plan without a pass, or with one that has no length."""
         return PlanItinerary(_order_of(plan))
 
     @property
     def count(self) -> int:
         """How many passes and laps the plan has, a cut pass counted once a piece."""
-        return len(self._order.passes)
-
-    @property
-    def passes(self) -> tuple[Pass, ...]:
-        """All, in driving order, where the plan has them."""
-        return self._order.passes
+        return len(self._order.lines)
 
     def line(self, key: int) -> GuideLine | None:
         """Made on first use."""
         if not 0 <= key < self.count:
             return None
+        if self._metres == 0:
+            return self._order.lines[key]
         if key not in self._lines:
-            target = self._moved(key)
-            polyline = Polyline.of(target)
-            self._lines[key] = GuideLine(key, target, polyline, polyline.length)
+            self._lines[key] = self._moved(self._order.lines[key])
         return self._lines[key]
 
-    def _moved(self, key: int) -> Pass:
-        target = self._order.passes[key]
-        if self._metres == 0:
-            return target
-        metres = self._metres * self.sense(key)
-        points = offset_line(target.points, metres, closed=target.closed)
-        return target if points is None else replace(target, points=points)
+    def _moved(self, line: GuideLine) -> GuideLine:
+        """A lap that vanishes when it is moved so far stays where it is."""
+        metres = self._metres * self.sense(line.key)
+        points = offset_line(line.target.points, metres, closed=line.target.closed)
+        return line if points is None else _guide_line(line.key, replace(line.target, points=points))
 
     def keys(self, number: int) -> Sequence[int]:
         """In driving order."""
@@ -268,36 +261,41 @@ class PlanItinerary:
 
     def sense(self, key: int) -> float:
         """By the way from the pass's first to its last point."""
-        target = self._order.passes[key]
+        target = self._order.lines[key].target
         if target.closed:
             return 1.0
         east, north = target.points[-1] - target.points[0]
         return 1.0 if abs(wrap_pi(math.atan2(east, north) - self._order.direction)) <= math.pi / 2 else -1.0
 
 
+def _guide_line(key: int, target: Pass) -> GuideLine:
+    polyline = Polyline.of(target)
+    return GuideLine(key, target, polyline, polyline.length)
+
+
 def _order_of(plan: Plan) -> PlanOrder:
-    passes: list[Pass] = []
+    lines: list[GuideLine] = []
     ways: list[Path | None] = []
     between: list[Segment] = []
     for segment in plan.segments:
-        if segment.kind in (SegmentKind.TURN, SegmentKind.TRANSFER) or not segment.implement_down:
+        if segment.kind in (SegmentKind.TURN, SegmentKind.TRANSFER):
             between.append(segment)
             continue
         ways.append(_path(between))
         between = []
-        lap = segment.kind is SegmentKind.LAP
-        passes.append(Pass(segment.number, segment.points, segment.closed, order=len(passes), lap=lap))
-    if not passes:
+        key, lap = len(lines), segment.kind is SegmentKind.LAP
+        lines.append(_guide_line(key, Pass(segment.number, segment.points, segment.closed, order=key, lap=lap)))
+    if not lines:
         msg = "the plan has no pass to drive"
         raise ValueError(msg)
     ways.append(_path(between))
-    pieces = [(target.order or 0, piece) for target in passes for piece in _pieces(target)]
     by_number: dict[int, tuple[int, ...]] = {}
-    for target in passes:
-        by_number[target.number] = (*by_number.get(target.number, ()), target.order or 0)
+    for line in lines:
+        by_number[line.target.number] = (*by_number.get(line.target.number, ()), line.key)
+    pieces = [(line.key, piece) for line in lines for piece in _pieces(line.polyline)]
     tree = shapely.STRtree([shapely.LineString(piece) for _, piece in pieces])
     keys = tuple(key for key, _ in pieces)
-    return PlanOrder(tuple(passes), tuple(ways), tree, keys, by_number, plan.direction, plan.spacing)
+    return PlanOrder(tuple(lines), tuple(ways), tree, keys, by_number, plan.direction, plan.spacing)
 
 
 def _path(segments: Sequence[Segment]) -> Path | None:
@@ -309,7 +307,6 @@ def _path(segments: Sequence[Segment]) -> Path | None:
     return Path(Polyline.through(points), all(segment.fits for segment in segments))
 
 
-def _pieces(target: Pass) -> list[FloatArray]:
-    points = np.vstack([target.points, target.points[:1]]) if target.closed else target.points
-    starts = range(0, len(points) - 1, POINTS_A_PIECE - 1)
-    return [points[start : start + POINTS_A_PIECE] for start in starts]
+def _pieces(line: Polyline) -> list[FloatArray]:
+    points = line.vertices
+    return [points[start : start + POINTS_A_PIECE] for start in range(0, len(points) - 1, POINTS_A_PIECE - 1)]

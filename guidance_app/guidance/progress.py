@@ -62,6 +62,10 @@ class Progress:
         """Metres of the pass worked so far."""
         return math.fsum(high - low for low, high in self._stretches.get(key, ()))
 
+    def stretches(self, key: int) -> int:
+        """In how many stretches that is remembered."""
+        return len(self._stretches.get(key, ()))
+
     @property
     def begun(self) -> bool:
         """Whether any pass has been worked on."""

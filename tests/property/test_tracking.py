@@ -12,6 +12,7 @@ from support.passes import a_pose, drive, poses_along, round_trip, rounded_ring
 
 from guidance_app.geodesy import MAX_REACH
 from guidance_app.guidance.family import Circles, OffsetCurves, ParallelLines
+from guidance_app.guidance.offsets import LineOffsets
 from guidance_app.guidance.polyline import Polyline
 from guidance_app.guidance.tracking import Tracker, cross_track
 from guidance_app.model import FloatArray, Guidance, OffsetKind
@@ -43,6 +44,15 @@ def test_distance_is_that_to_the_line(points: FloatArray, place: tuple[float, fl
     assert foot.distance == pytest.approx(shapely.LineString(points).distance(shapely.Point(place)), abs=MICROMETRE)
     if 0 <= foot.along <= line.length:
         assert abs(foot.cross) == pytest.approx(foot.distance, abs=MICROMETRE)
+
+
+@pytest.mark.parametrize(
+    "points", [[], [[1.0, 2.0]], [[1.0, 2.0], [1.0, 2.0]], [[0.0, 0.0], [math.nan, 1.0]], [[0.0, 0.0], [math.inf, 1.0]]]
+)
+@pytest.mark.parametrize("closed", [False, True])
+def test_what_has_no_direction_is_no_line(points: list[list[float]], closed: bool) -> None:
+    with pytest.raises(ValueError, match="a line to follow needs"):
+        Polyline.through(np.array(points).reshape(-1, 2), closed=closed)
 
 
 @given(bent_lines(), places)
@@ -278,6 +288,11 @@ def test_shifted_lines_shift_the_error_and_come_back(
     assert tracker.drop(kind)
     assert tracker.offsets == ()
     assert drive(tracker, [pose], working=False)[0].cross_track == pytest.approx(before.cross_track, abs=MICROMETRE)
+
+
+def test_a_position_offset_is_no_line_offset() -> None:
+    with pytest.raises(ValueError, match="line offsets"):
+        LineOffsets().plus(OffsetKind.MARK, 1.0, 0.0)
 
 
 @given(st.floats(-1.9, 1.9), st.booleans())

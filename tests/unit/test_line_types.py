@@ -63,6 +63,19 @@ def test_a_spacing_that_cannot_be_driven_is_refused(name: str, spacing: float) -
         LINES[name].family(POINTS[name], spacing)
 
 
+def test_a_curve_of_less_than_five_metres_says_how_short_it_is() -> None:
+    with pytest.raises(GuidanceLineError, match=r"3\.0 m long"):
+        LINES["curve"].family(np.array([[0.0, 0.0], [3.0, 0.0]]), SPACING)
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_numbers_beyond_every_field_have_no_pass(name: str) -> None:
+    family = LINES[name].family(POINTS[name], SPACING)
+    assert family.pass_numbered(10**7) is None
+    assert family.pass_numbered(-(10**7)) is None
+    assert family.count is None
+
+
 def test_a_plus_runs_in_its_heading() -> None:
     line = LINES["a-plus"].family(POINTS["a-plus"], SPACING).pass_numbered(0)
     assert line is not None

@@ -18,10 +18,10 @@ from support.passes import (
     rounded_ring,
 )
 
-from guidance_app.guidance.family import OffsetCurves, ParallelLines
+from guidance_app.guidance.family import Circles, OffsetCurves, ParallelLines
 from guidance_app.guidance.patterns.last_pass import following_last
 from guidance_app.guidance.tracking import Tracker
-from guidance_app.model import Guidance, OffsetKind, Plan, SegmentKind
+from guidance_app.model import Guidance, OffsetKind, Plan, Segment, SegmentKind
 
 SPACING = 4.0
 CENTIMETRE = 0.01
@@ -352,6 +352,39 @@ def test_a_nudge_moves_the_passes_of_a_plan_to_one_side_of_the_ground() -> None:
     assert errors == {1: -0.3, 2: 0.3, 3: -0.3}
     first = driven[0][1].target.points
     assert first[:, 0] == pytest.approx(0.3)
+
+
+def test_a_target_is_not_moved_out_of_existence() -> None:
+    tracker = Tracker(Circles((0.0, 0.0), 6.0, SPACING), SPACING)
+    before = drive(tracker, [a_pose(0.0, 0.0, 6.2, math.pi / 2)], working=False)[0]
+    assert not tracker.shift(10.0)
+    assert tracker.offsets == ()
+    assert drive(tracker, [a_pose(1.0, 0.0, 6.2, math.pi / 2)], working=False)[0].cross_track == before.cross_track
+
+
+def test_a_lap_is_nudged_to_its_own_right() -> None:
+    plan = two_laps()
+    tracker = Tracker(plan, SPACING)
+    poses = list(poses_along(plan.segments[0].points[:60]))
+    drive(tracker, poses[:1], working=False)
+    assert tracker.shift(0.2)
+    answers = drive(tracker, poses, working=True)
+    assert [one.cross_track for one in answers] == pytest.approx([-0.2] * len(answers), abs=CENTIMETRE)
+    assert shapely.LinearRing(answers[0].target.points).length < shapely.LinearRing(plan.segments[0].points).length
+
+
+@pytest.mark.parametrize(
+    "segments",
+    [
+        [],
+        [a_segment(SegmentKind.TURN, 1, np.array([[0.0, 0.0], [1.0, 0.0]]))],
+        [a_segment(SegmentKind.PASS, 1, np.array([[1.0, 2.0], [1.0, 2.0]]))],
+    ],
+    ids=["nothing", "only a turn", "a pass without length"],
+)
+def test_a_plan_that_cannot_be_driven_is_refused_at_once(segments: list[Segment]) -> None:
+    with pytest.raises(ValueError, match=r"plan|line"):
+        Tracker(a_plan(segments, SPACING), SPACING)
 
 
 def test_errors_at_a_predicted_pose_are_those_of_the_present_target() -> None:
