@@ -100,6 +100,12 @@ class Ground:
         self.track.feed(snapshot.track)
         self._measure(snapshot)
 
+    def measure_anew(self) -> Extent | None:
+        """The box of everything as it is now, without the room it was given to grow into."""
+        if self._latest is not None:
+            self.extent = everything(self._latest)
+        return self.extent
+
     def _measure(self, snapshot: Snapshot) -> None:
         """Keeps the box of everything; it grows in large steps, so that the whole-field view moves rarely."""
         pose = snapshot.pose

@@ -44,6 +44,7 @@ Z_TURN, Z_ELLIPSE = 0.125, 0.13
 LIFTED = 0.35
 """How high a lifted implement hangs."""
 
+NOWHERE = Extent(-50.0, -50.0, 50.0, 50.0)
 NOTHING = np.zeros((1, 2, 3), dtype=np.float32)
 HERE = f"{WORLD}/here"
 
@@ -132,7 +133,7 @@ class ClientScene:
         """One redraw, as one batch of messages."""
         shown = shown_pose(snapshot, now)
         with self._client.atomic():
-            self._camera(ground.extent)
+            self._camera(ground)
             self._move_world(shown, now, ground.extent)
             self._machine(snapshot, shown)
             self._ahead(snapshot, shown)
@@ -145,11 +146,12 @@ class ClientScene:
 
     # --- camera and world ------------------------------------------------------------------------------------------
 
-    def _camera(self, extent: Extent | None) -> None:
+    def _camera(self, ground: Ground) -> None:
         """Sends the camera home when the view, the window or the field have changed; never else."""
         camera = self._client.camera
         aspect = camera.image_width / max(camera.image_height, 1)
-        box = extent or Extent(-50.0, -50.0, 50.0, 50.0)
+        asked = self._home_key is None and self._mode is ViewMode.WHOLE_FIELD
+        box = (ground.measure_anew() if asked else ground.extent) or NOWHERE
         key = (self._mode, round(aspect, 2), box if self._mode is ViewMode.WHOLE_FIELD else None)
         if key == self._home_key:
             return
