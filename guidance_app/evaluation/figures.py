@@ -23,8 +23,9 @@ from guidance_app.evaluation.gomez_gil import (
 )
 from guidance_app.evaluation.inoue import field_run
 from guidance_app.evaluation.metrics import errors_of, wrapped
-from guidance_app.evaluation.real import chord_headings, frame_of, recording_from_fixes
+from guidance_app.evaluation.real import as_courses, chord_headings, frame_of, recording_from_fixes
 from guidance_app.evaluation.scenarios import KMH, Purpose, generator, straight_line
+from guidance_app.evaluation.signals import gauss_markov
 from guidance_app.evaluation.steering import Steering, simulate
 from guidance_app.evaluation.tracks import Recording, Track
 from guidance_app.model import Fix, FloatArray
@@ -36,11 +37,11 @@ if TYPE_CHECKING:
 __all__ = ["FiguresMissingError", "draw_figures"]
 
 BEFORE, PAPER, OURS, TRUE = "#b5651d", "#3b6ea5", "#1b7837", "#444444"
-SHOWN = slice(40, 110)
+SHOWN = slice(60, 90)
 """Fixes of a path that are shown large."""
 
-SPACING = 2.54
-"""Inoue et al. drove passes of this width."""
+SCREEN_SIGMA, SCREEN_TIME = 0.06, 6.0
+"""By how many metres, and for how many seconds, the screen is off while the driver steers by it."""
 
 
 class FiguresMissingError(Exception):
@@ -161,11 +162,11 @@ def _real_headings(figure: "Figure", fixes: Sequence[Fix]) -> None:
     panels = {}
     raw = unfiltered(recording)
     panels["as recorded"] = (errors_of(raw, chords), BEFORE)
-    panels["paper's filter, its heading"] = (
-        errors_of(estimate_recording(recording, "quantisation_kf"), chords),
-        PAPER,
-    )
-    panels["adaptive filter, its heading"] = (errors_of(estimate_recording(recording, "adaptive"), chords), OURS)
+    for title, name, colour in (
+        ("paper's filter", "quantisation_kf", PAPER),
+        ("adaptive filter", "adaptive", OURS),
+    ):
+        panels[f"{title}, its heading"] = (errors_of(as_courses(estimate_recording(recording, name)), chords), colour)
     _heading_panels(
         figure,
         "Figure 13: headings of a real recording on straight stretches, against the chord of 8 s",
@@ -233,22 +234,23 @@ def _convergence(figure: "Figure") -> None:
 def _round_trip(figure: "Figure") -> None:
     axes = _axes(
         figure,
-        "Figure 14: five passes of 160 m with guidance: 1 and 2 looking 0.5 s ahead, 3 to 5 looking 1.5 s (simulated)",
+        "Figure 14: five passes of 160 m by the screen: 1 and 2 steering late and hard, 3 to 5 early (simulated)",
         "distance along the pass, m",
-        "across the passes, m",
+        "deviation, cm (each pass on its own line)",
     )
+    late, early = Steering(0.5, convergence=1.0), Steering(1.5)
     for number in range(5):
-        prediction = 0.5 if number < 2 else 1.5
         random = generator(Purpose.REPORT, "figure 14", number)
-        start = 0.35 * float(random.standard_normal())
-        run = simulate(1.2, Steering(prediction), random, start=start, duration=134.0, noise=0.3)
-        offset = number * SPACING
+        shown_off = gauss_markov(1340, 0.1, SCREEN_SIGMA, SCREEN_TIME, random)[:, 0]
+        how = late if number < 2 else early
+        run = simulate(1.2, how, random, start=0.25, shown_off=shown_off)
+        offset = 100.0 * number
         axes.axhline(offset, color=TRUE, linewidth=0.6)
-        along = run.along if number % 2 == 0 else 160 - run.along
-        axes.plot(along, offset + run.cross_track, color=BEFORE if number < 2 else OURS, linewidth=1)
+        axes.plot(run.along, offset + 100 * run.cross_track, color=BEFORE if number < 2 else OURS, linewidth=1)
         worst = 100 * float(np.max(np.abs(run.cross_track[run.along > 15])))
-        axes.annotate(f"pass {number + 1}: within {worst:.0f} cm", (2, offset + 0.5), fontsize=8)
+        axes.annotate(f"pass {number + 1}: within {worst:.0f} cm", (2, offset + 36), fontsize=8)
     axes.set_xlim(0, 160)
+    axes.set_yticks([])
 
 
 def _axes(figure: "Figure", title: str, across: str, up: str) -> "Axes":

@@ -23,6 +23,7 @@ from guidance_app.geodesy import FieldFrame, grid_cell
 from guidance_app.model import Chunk, Fix, FixQuality, FloatArray
 
 __all__ = [
+    "as_courses",
     "car_rows",
     "chord_headings",
     "fixes_of",
@@ -140,7 +141,7 @@ def chord_headings(fixes: Sequence[Fix], frame: FieldFrame) -> Track:
 
 def heading_consistency(recording: Recording, fixes: Sequence[Fix], frame: FieldFrame, filter_name: str) -> float:
     """Root mean square of the filter's heading against the chord's on straight stretches, in radians."""
-    errors = errors_of(_as_courses(estimate_recording(recording, filter_name)), chord_headings(fixes, frame))
+    errors = errors_of(as_courses(estimate_recording(recording, filter_name)), chord_headings(fixes, frame))
     rms = summarise(errors).heading_rms
     if rms is None:
         msg = "the log has no straight stretch long enough to compare headings with"
@@ -207,10 +208,10 @@ def _scores(recording: Recording, truth: Track, *, shifted: bool) -> dict[str, S
     settings: FilterSettings | None = None
     tracks = {name: estimate_recording(recording, name, settings) for name in ("off", "quantisation_kf", "adaptive")}
     tracks["smoother"] = smooth_recording(recording, settings)
-    return {name: score(_as_courses(track), truth, remove_offset=shifted) for name, track in tracks.items()}
+    return {name: score(as_courses(track), truth, remove_offset=shifted) for name, track in tracks.items()}
 
 
-def _as_courses(track: Track) -> Track:
+def as_courses(track: Track) -> Track:
     """With the direction of travel in place of the heading: what positions alone can tell of a tractor that backs."""
     return replace(track, heading=np.where(track.speed < 0, track.heading + math.pi, track.heading) % math.tau)
 

@@ -29,6 +29,7 @@ __all__ = ["Convergence", "Run", "Steering", "convergence", "simulate", "steerin
 
 STEP = 0.1
 """Seconds between two looks at the line."""
+DRIVE_STEPS = 400
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,22 +67,26 @@ def simulate(
     random: np.random.Generator,
     *,
     start: float = 1.0,
-    duration: float = 40.0,
     noise: float = 0.08,
+    shown_off: FloatArray | None = None,
 ) -> Run:
     """A drive to the line from ``start`` metres right of it; ``noise`` is the paper's 8 % on slip and yaw rate.
 
-    The line is the north axis, so east is the cross-track error.
+    The line is the north axis, so east is the cross-track error. ``shown_off``, a value for each tenth of a second
+    of the drive, is by how much the screen shows the tractor too far right; without it the drive takes 40 s.
     """
     model = TractorModel(steering_limit=steering.limit)
     _, gain = slip_and_yaw_rate(model, speed, 1.0)
     ahead = steering.prediction_s
     state = VehicleState(t=0.0, east=start, north=0.0, heading=0.0, speed=speed)
     states = []
-    for _ in range(round(duration / STEP)):
+    off = np.zeros(DRIVE_STEPS) if shown_off is None else shown_off
+    for shown_too_far in off.tolist():
         heading = wrap_pi(state.heading)
         states.append((state.t, state.north, state.east, heading, state.steering))
-        predicted = state.east + speed * ahead * math.sin(heading + state.slip + state.yaw_rate * ahead / 2)
+        predicted = (
+            state.east + shown_too_far + speed * ahead * math.sin(heading + state.slip + state.yaw_rate * ahead / 2)
+        )
         target = -math.atan(steering.convergence * predicted)
         wanted = (target - heading) / ahead / gain
         disturbance = noise * random.standard_normal(2)
