@@ -1,7 +1,7 @@
 """The screen: the shared ground, one scene and one set of panels a client, and the loop that redraws them.
 
 One thread draws everything. It looks at the newest snapshot about 25 times a second and skips what it missed; pictures
-between two fixes are carried on by the pose's own motion. Callbacks of viser run on other threads: they post a command
+between two fixes are carried on by the pose's own motion. Callbacks of viser run on its own loop: they post a command
 or leave a wish, which the loop takes at its next round. A client that has gone is forgotten; whatever happens while one
 client is drawn, the others are drawn on.
 """

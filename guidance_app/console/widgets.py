@@ -3,6 +3,9 @@
 A value that the program sets fires the widget's callback like a finger does, and a finger on a slider fights with the
 program that sets it. ``Followed`` keeps both apart: its callback hears fingers only, and for a moment after a finger
 the program does not set the widget.
+
+Callbacks are coroutines: viser runs them on its own loop, one after the other, before the next message is looked at. On
+its pool of threads two quick presses could both read the later button. They must therefore return at once.
 """
 
 import html
@@ -108,14 +111,14 @@ class Shown:
 
 
 class Followed:
-    """An input that shows what is. ``heard`` is called with the value a finger has set, on one of viser's threads."""
+    """An input that shows what is. ``heard`` is called with the value a finger has set, on viser's loop."""
 
     def __init__(self, handle: Any, heard: Callable[[Any], None]) -> None:
         self._handle = handle
         self._touched = -HELD_S
 
         @handle.on_update  # type: ignore[untyped-decorator]  # any of viser's inputs
-        def _(event: viser.GuiEvent[Any]) -> None:
+        async def _(event: viser.GuiEvent[Any]) -> None:
             if event.client_id is None:
                 return
             self._touched = time.monotonic()
@@ -135,7 +138,7 @@ def buttons(
     by_words = dict(actions)
 
     @handle.on_click
-    def _(event: viser.GuiEvent[viser.GuiButtonGroupHandle]) -> None:
+    async def _(event: viser.GuiEvent[viser.GuiButtonGroupHandle]) -> None:
         by_words[event.target.value]()
 
     return handle
@@ -160,7 +163,7 @@ class Choice:
         self._handle = gui.add_button_group(label, (*self._options, *self._beside))
 
         @self._handle.on_click
-        def _(event: viser.GuiEvent[viser.GuiButtonGroupHandle]) -> None:
+        async def _(event: viser.GuiEvent[viser.GuiButtonGroupHandle]) -> None:
             words = event.target.value.removeprefix(self.MARK)
             if words in self._beside:
                 self._beside[words]()

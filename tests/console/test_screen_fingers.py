@@ -71,6 +71,15 @@ def test_every_button_posts_its_command(stage: Stage) -> None:
         stage.tick_until(client, lambda: SetLookAhead(2.5) in stage.session.commands)
 
 
+def test_quick_presses_all_count_and_in_order(stage: Stage) -> None:
+    with stage.client() as client:
+        presses = [("◀2", -0.02), ("2▶", 0.02), ("◀10", -0.10), ("2▶", 0.02), ("2▶", 0.02), ("10▶", 0.10)] * 5
+        for words, _ in presses:
+            client.press(words)
+        stage.tick_until(client, lambda: len(stage.session.commands) == len(presses))
+        assert stage.session.commands == [Nudge(metres) for _, metres in presses]
+
+
 def test_no_button_is_left_without_a_test(stage: Stage) -> None:
     elsewhere = {"Driver", "Heading up", "North up", "Whole field", "Bring back", "Day", "Night", "Look ahead"}
     known = {words for words, _ in COMMANDS} | elsewhere

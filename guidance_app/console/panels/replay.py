@@ -28,7 +28,7 @@ class Replay:
         self._play = gui.add_button("Pause", color="green")
 
         @self._play.on_click
-        def _(_: object) -> None:
+        async def _(_: object) -> None:
             if control.state.playing:
                 control.pause()
             else:

@@ -25,7 +25,7 @@ class Summary:
         self._work = gui.add_button("Work", color="gray", hint="Lower or lift the implement")
 
         @self._work.on_click
-        def _(_: object) -> None:
+        async def _(_: object) -> None:
             hands.post(SetWork(down=not hands.desk().snapshot.working))
 
     def show(self, desk: Desk) -> None:
