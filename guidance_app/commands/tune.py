@@ -110,7 +110,7 @@ def _tune_models(arguments: argparse.Namespace) -> int:
         raise TuningError(msg)
     kind = arguments.models
     objective = ModelObjective(kind, arguments.seeds)
-    found, stopped = _watched(model_search(objective))
+    found, stopped = _watched(model_search(objective), lambda best: f"{math.log(best.rms):.4f}")
     if found is None:
         print("tune: stopped before the first result; nothing is kept", file=sys.stderr)
         return 130
@@ -156,10 +156,14 @@ def _search(arguments: argparse.Namespace) -> Search:
     return cma_search
 
 
-def _watched(finding: Iterator[Found]) -> tuple[Found | None, bool]:
+def _in_centimetres(found: Found) -> str:
+    return f"{100 * found.rms:.3f} cm"
+
+
+def _watched(finding: Iterator[Found], said: Callable[[Found], str] = _in_centimetres) -> tuple[Found | None, bool]:
     """The last result and whether Ctrl-C ended the search; a progress bar runs on stderr meanwhile."""
     found, stopped = None, False
-    bar = _Bar()
+    bar = _Bar(said)
     try:
         for found in finding:
             bar.show(found)
@@ -172,7 +176,8 @@ def _watched(finding: Iterator[Found]) -> tuple[Found | None, bool]:
 class _Bar:
     """The progress on stderr: one line that is drawn over on a terminal, else a new line every ten percent."""
 
-    def __init__(self) -> None:
+    def __init__(self, said: Callable[[Found], str]) -> None:
+        self._said = said
         self._over = sys.stderr.isatty()
         self._last = -1
 
@@ -184,7 +189,7 @@ class _Bar:
             return
         self._last = shown
         bar = "#" * (BAR * percent // 100)
-        text = f"[{bar:<{BAR}}] {percent:3} %  {found.evaluations:,} evaluations, best {100 * found.rms:.3f} cm"
+        text = f"[{bar:<{BAR}}] {percent:3} %  {found.evaluations:,} evaluations, best {self._said(found)}"
         print(f"\r{text}" if self._over else text, end="" if self._over else "\n", file=sys.stderr, flush=True)
 
     def end(self) -> None:

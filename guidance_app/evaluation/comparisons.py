@@ -130,7 +130,13 @@ def scenario_rows(seeds: int, spread: Spread) -> list[Row]:
         ("autonomous", scenario): Case("position", scenario, runs, quality=FixQuality.AUTONOMOUS)
         for scenario in SCENARIOS
     }
-    jobs = {**cases, **spoiled, **drifting}
+    rates = {
+        (_at_rate(method, rate), scenario): Case(method, scenario, runs, rate=rate)
+        for method in RATE_METHODS
+        for rate in OTHER_RATES
+        for scenario in SCENARIOS
+    }
+    jobs = {**cases, **spoiled, **drifting, **rates}
     results = dict(zip(jobs, spread(_attempt, list(jobs.values())), strict=True))
     known = {key: result for key, result in results.items() if result is not None}
     return [
@@ -140,6 +146,7 @@ def scenario_rows(seeds: int, spread: Spread) -> list[Row]:
         *_honesty_rows(known),
         *_scenario_table(known),
         *_unseen_rows(known),
+        *_rate_rows(known),
     ]
 
 
@@ -148,6 +155,9 @@ def scenario_rows(seeds: int, spread: Spread) -> list[Row]:
 Results = Mapping[tuple[str, str], CaseResult]
 
 UNSEEN_METHODS = ("paper", "peer", "position", "doppler", "doppler gyro")
+
+OTHER_RATES = (1.0, 10.0)
+RATE_METHODS = ("off", "paper", "position", "doppler gyro")
 
 MEAN_GOALS: Mapping[str, tuple[float, float | None]] = MappingProxyType(
     {
@@ -277,4 +287,24 @@ def _unseen_rows(results: Results) -> list[Row]:
     rows: list[Row] = []
     for method in ("position", "doppler", "doppler gyro"):
         rows += _pair(results, protocol, method, list(UNSEEN), METHODS[method].title, (None, None))
+    return rows
+
+
+def _at_rate(method: str, rate: float) -> str:
+    """The key of a method at another rate than the scenarios' own."""
+    return f"{method} at {rate:g} Hz"
+
+
+def _rate_rows(results: Results) -> list[Row]:
+    protocol = "Eight scenarios at other rates, geometric mean of RMS (peer: no filter)"
+    rows = []
+    for method in ("position", "doppler gyro"):
+        for rate in OTHER_RATES:
+            keys = (method, "paper", "off")
+            ours, paper, raw = (_means(results, _at_rate(key, rate), list(SCENARIOS)) for key in keys)
+            for index, (quantity, unit) in enumerate((("distance", "cm"), ("heading", "deg"))):
+                value = ours[index]
+                title = f"{METHODS[method].title}, {rate:g} Hz, {quantity}"
+                if value is not None:
+                    rows.append(Row(protocol, title, unit, value, paper[index], raw[index]))
     return rows

@@ -234,15 +234,15 @@ def _convergence(figure: "Figure") -> None:
 def _round_trip(figure: "Figure") -> None:
     axes = _axes(
         figure,
-        "Figure 14: five passes of 160 m by the screen: 1 and 2 steering late and hard, 3 to 5 early (simulated)",
+        "Figure 14: five passes of 160 m by the screen, looking 0.5 s (1, 2) and 1.5 s ahead (3 to 5), simulated",
         "distance along the pass, m",
         "deviation, cm (each pass on its own line)",
     )
-    late, early = Steering(0.5, convergence=1.0), Steering(1.5)
+    short, long = Steering(0.5, convergence=1.0), Steering(1.5)
     for number in range(5):
         random = generator(Purpose.REPORT, "figure 14", number)
         shown_off = gauss_markov(1340, 0.1, SCREEN_SIGMA, SCREEN_TIME, random)[:, 0]
-        how = late if number < 2 else early
+        how = short if number < 2 else long
         run = simulate(1.2, how, random, start=0.25, shown_off=shown_off)
         offset = 100.0 * number
         axes.axhline(offset, color=TRUE, linewidth=0.6)
