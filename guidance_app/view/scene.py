@@ -168,7 +168,7 @@ def number_layout(mode: ViewMode, camera_distance: float) -> NumberLayout:
     """Sizes follow the camera's distance, so that a number looks equally large near and far."""
     d = camera_distance
     if mode is ViewMode.DRIVER:
-        return NumberLayout(ahead=1.25 * d, every=0.8 * d, size=0.05 * d, stretch=2.2, most=9, reach=1.3 * d)
+        return NumberLayout(ahead=1.25 * d, every=0.8 * d, size=0.05 * d, stretch=3.0, most=9, reach=1.3 * d)
     if mode is ViewMode.WHOLE_FIELD:
         return NumberLayout(ahead=0.0, every=1.0, size=0.0145 * d, stretch=1.0, most=MOST_NUMBERS)
     return NumberLayout(ahead=0.16 * d, every=0.32 * d, size=0.015 * d, stretch=1.0, most=17, reach=d)
