@@ -220,7 +220,7 @@ def test_a_gap_cuts_a_recording() -> None:
 def test_a_killed_worker_loses_nothing() -> None:
     """Two workers on this machine, one killed in the middle: the same winner after the same number of draws."""
     distributed = pytest.importorskip("distributed")
-    objective = straight_objective(100)
+    objective = straight_objective(20)
     chunks = chunks_of(24 * CHUNK)
     alone = last(random_search(objective, chunks, 1))
     with distributed.LocalCluster(
