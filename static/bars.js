@@ -1,26 +1,25 @@
 // Draws the light bar and the prediction bar on a canvas: where everything goes, and in what shape and colour. What is
-// drawn comes in a message (its members: guidance_app/view/bar.py); colours come from the style sheet.
+// drawn comes in a message (its members: guidance_app/view/bar.py), colours come from the page's style sheet.
 
 const LEAN_SHOWN = 3; // a lean is a few degrees; it is drawn so much larger
 const LEAN_MOST = 60;
-const COLOURS = ["ground", "ink", "dim", "hollow", "off", "green", "yellow", "red", "on-green", "track", "mark"];
+export const COLOURS = ["ground", "ink", "dim", "hollow", "off", "green", "yellow", "red", "on-green", "track", "mark"];
 const FONT = 'system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", "DejaVu Sans", sans-serif';
 
-/** The painter of one canvas. `style` is shared with its owner, who changes it. */
+/** The painter of one canvas, on the page or in a worker. `style` is shared with its owner, who changes it. */
 export function makeBars(canvas, style) {
   const pen = canvas.getContext("2d");
   let size = { width: 0, height: 0, side: 0 };
   let colours = {};
 
-  /** Takes over the canvas's size and colours; `side` is the width of the words beside the bars. */
-  const fit = (side) => {
-    const ratio = window.devicePixelRatio || 1;
-    const computed = getComputedStyle(canvas);
-    colours = Object.fromEntries(COLOURS.map((name) => [name, computed.getPropertyValue(`--${name}`).trim()]));
-    size = { width: canvas.clientWidth, height: canvas.clientHeight, side };
-    canvas.width = Math.round(size.width * ratio);
-    canvas.height = Math.round(size.height * ratio);
-    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  /** Takes over the look of the page: `width`, `height` and `side` (the words beside the bars) in its pixels, how many
+   * of the screen's there are to one (`ratio`), and the `colours` by name. */
+  const fit = (look) => {
+    size = look;
+    colours = look.colours;
+    canvas.width = Math.round(look.width * look.ratio);
+    canvas.height = Math.round(look.height * look.ratio);
+    pen.setTransform(look.ratio, 0, 0, look.ratio, 0, 0);
   };
 
   // --- drawing ---

@@ -1,21 +1,21 @@
-// The light bar across the top of the page: bars on a canvas, words at both sides, alarms. What it shows was decided on the
-// server (guidance_app/view/bar.py); here it is only shown, and NO DATA when nothing is heard.
+// The light bar across the top of the page: the frame, the words at both sides, the alarms. What it shows was decided on
+// the server (guidance_app/view/bar.py); the bars themselves are drawn by runbar.js.
 
-import { makeBars } from "./bars.js";
-import { listen } from "./live.js";
+import { COLOURS } from "./bars.js";
+import { runBar } from "./runbar.js";
 
 const ALARM_GAP = 10000;
-
-const style = { speed: "", zones: "gggyyyrr", guided: "tractor", ahead: "", sounds: false, start: null };
+const TIMINGS = 1000;
 
 const shared = {
-  message: null, // the newest that was believed
+  message: null, // the newest that was believed; null while nothing is
   state: "opening",
   drawn: null, // what stands on the canvas
   timings: [],
   connections: 0,
-  lastHeard: performance.now(),
+  lastHeard: null,
   silentSince: null,
+  worker: false,
 };
 window.__lightbar = shared;
 
@@ -50,15 +50,7 @@ const guidedPoint = element("span", "guided", lastLine);
 const workedArea = element("span", "area", lastLine);
 document.body.append(bar);
 
-const bars = makeBars(canvas, style);
-
 // --- what is said beside the bars, to eyes, screen readers and tests ---
-const reason = () => {
-  if (shared.state === "silent") return "NO DATA";
-  const words = shared.message?.r ?? "connecting";
-  return words.charAt(0).toUpperCase() + words.slice(1);
-};
-
 const sayAttributes = (known) => {
   bar.dataset.state = shared.state;
   bar.dataset.crossTrack = known.x === undefined ? "" : (known.x / 1000).toFixed(3);
@@ -66,12 +58,12 @@ const sayAttributes = (known) => {
   bar.dataset.number = known.d ?? "";
   bar.dataset.sequence = known.q ?? "";
   bar.dataset.fixAge = known.a === undefined ? "" : (known.a / 1000).toFixed(3);
-  const { steer, number, reason: why } = shared.drawn;
-  const spoken = why ?? (steer === "none" ? "on the line" : `steer ${steer} ${number}`);
+  const { steer, number, reason } = shared.drawn;
+  const spoken = reason ?? (steer === "none" ? "on the line" : `steer ${steer} ${number}`);
   if (canvas.getAttribute("aria-label") !== spoken) canvas.setAttribute("aria-label", spoken);
 };
 
-const sayWords = (known) => {
+const sayWords = (known, style) => {
   const [, name, detail] = /^(.*?)( \(.*\))?$/.exec(known.n ?? "");
   setText(passName, name);
   setText(passDetail, detail ?? "");
@@ -91,46 +83,56 @@ const sayWords = (known) => {
 let lastAlarm = -ALARM_GAP;
 let lastLevel = "far";
 
-const alarm = (before) => {
+const alarm = (before, sounds) => {
   const level = shared.state === "guide" ? (shared.message.u?.[2] ?? "far") : lastLevel;
   const lost = before === "guide" && shared.state !== "guide";
   const turning = level === "now" && lastLevel !== "now";
   lastLevel = level;
-  if (!style.sounds || !(lost || turning) || performance.now() - lastAlarm < ALARM_GAP) return;
+  if (!sounds || !(lost || turning) || performance.now() - lastAlarm < ALARM_GAP) return;
   const sounded = lost ? __page.beep(520, 160) && __page.beep(390, 240, 200) : __page.beep(880, 140);
   if (sounded) lastAlarm = performance.now();
 };
 
-const show = (state) => {
+const hear = ({ reload, style, timing, ...news }) => {
+  if (reload) {
+    location.reload();
+    return;
+  }
   const before = shared.state;
-  shared.state = state;
-  shared.drawn = bars.draw(state, shared.message, state === "guide" ? null : reason());
-  const known = state === "silent" ? {} : (shared.message ?? {});
+  Object.assign(shared, news);
+  if (timing) shared.timings.push(timing);
+  if (shared.timings.length > TIMINGS) shared.timings.splice(0, TIMINGS / 2);
+  const known = shared.message ?? {};
   sayAttributes(known);
-  sayWords(known);
-  alarm(before);
+  sayWords(known, style);
+  alarm(before, style.sounds);
 };
 
-const fit = () => {
-  bars.fit(right.offsetWidth);
-  show(shared.state);
+// --- the bars, in a worker where the browser can ---
+const look = () => {
+  const computed = getComputedStyle(bar);
+  return {
+    width: bar.clientWidth,
+    height: bar.clientHeight,
+    side: right.offsetWidth,
+    ratio: window.devicePixelRatio || 1,
+    colours: Object.fromEntries(COLOURS.map((name) => [name, computed.getPropertyValue(`--${name}`).trim()])),
+  };
 };
-new ResizeObserver(fit).observe(bar);
+
+const start = () => {
+  if (!canvas.transferControlToOffscreen) return runBar(canvas, hear);
+  const worker = new Worker("/static/barworker.js", { type: "module" });
+  worker.onmessage = ({ data }) => hear(data);
+  const drawnOn = canvas.transferControlToOffscreen();
+  worker.postMessage({ canvas: drawnOn }, [drawnOn]);
+  shared.worker = true;
+  return { fit: (seen) => worker.postMessage({ look: seen }) };
+};
+
+const running = start();
+new ResizeObserver(() => running.fit(look())).observe(bar);
 __page.onNight((night) => {
   bar.dataset.palette = night ? "night" : "day";
-  fit();
-});
-
-listen({
-  shared,
-  onMessage: (message) => {
-    shared.message = message;
-    show(message.s);
-  },
-  onStyle: (changed) => {
-    const { start } = changed; // of another start of the console: page and viser may be of another version
-    if (start && style.start && start !== style.start) location.reload();
-    Object.assign(style, changed);
-  },
-  onSilence: () => show("silent"),
+  running.fit(look());
 });

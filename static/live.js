@@ -1,5 +1,5 @@
 // The light bar's socket: hears messages, answers each when it has been dealt with, notices silence and lateness, and
-// finds its way back to a console that was away.
+// finds its way back to a console that was away. Runs in a worker or on the page.
 
 const SILENT_AFTER = 800; // ms without a message, or of lateness, before nothing is believed any more
 const HANG_UP_AFTER = 3000; // ms of silence before the socket is replaced
@@ -24,10 +24,12 @@ function makeLateness() {
 }
 
 /**
- * Listens until the page is closed. `onMessage` gets each message of the bar that has come in time, `onStyle` the others,
- * `onSilence` is called when nothing is to be believed any more; `shared` keeps what a test wants to know.
+ * Listens for good. `onMessage` gets each message of the bar that has come in time and the moment it came, `onStyle` the
+ * rarer ones about its style, `onSilence` is called when nothing is to be believed any more, `onShutOut` when the console
+ * no longer knows this browser. Gives a record of the contact: sockets opened so far, last message heard, silence begun.
  */
-export function listen({ onMessage, onStyle, onSilence, shared }) {
+export function listen({ onMessage, onStyle, onSilence, onShutOut }) {
+  const contact = { connections: 0, lastHeard: performance.now(), silentSince: null };
   let socket = null;
   let opened = 0;
   let lateness = makeLateness();
@@ -40,20 +42,11 @@ export function listen({ onMessage, onStyle, onSilence, shared }) {
       return;
     }
     if (lateness(message.t) < SILENT_AFTER) {
-      shared.lastHeard = heard;
-      shared.silentSince = null;
-      onMessage(message);
+      contact.lastHeard = heard;
+      contact.silentSince = null;
+      onMessage(message, heard);
     }
     event.target.send(String(message.t));
-    const drawn = performance.now();
-    shared.timings.push({
-      sequence: message.q,
-      age: message.a ?? null,
-      sent: message.t,
-      drawn: performance.timeOrigin + drawn,
-      took: drawn - heard,
-    });
-    if (shared.timings.length > 1000) shared.timings.splice(0, 500);
   };
 
   const connect = () => {
@@ -62,7 +55,7 @@ export function listen({ onMessage, onStyle, onSilence, shared }) {
     const scheme = location.protocol === "https:" ? "wss:" : "ws:";
     const mine = new WebSocket(`${scheme}//${location.host}/live`);
     socket = mine;
-    mine.onopen = () => (shared.connections += 1);
+    mine.onopen = () => (contact.connections += 1);
     mine.onmessage = hear;
     mine.onclose = () => {
       if (socket !== mine) return;
@@ -75,7 +68,7 @@ export function listen({ onMessage, onStyle, onSilence, shared }) {
   const reconnect = async () => {
     try {
       const answer = await fetch("/", { method: "HEAD", cache: "no-store" });
-      if (answer.status === 401) location.reload();
+      if (answer.status === 401) onShutOut();
       else connect();
     } catch {
       setTimeout(reconnect, RETRY);
@@ -84,12 +77,12 @@ export function listen({ onMessage, onStyle, onSilence, shared }) {
 
   const watch = () => {
     const now = performance.now();
-    if (now - shared.lastHeard <= SILENT_AFTER) return;
-    if (shared.silentSince === null) {
-      shared.silentSince = now;
+    if (now - contact.lastHeard <= SILENT_AFTER) return;
+    if (contact.silentSince === null) {
+      contact.silentSince = now;
       onSilence();
     }
-    if (socket && now - Math.max(shared.silentSince, opened) > HANG_UP_AFTER) {
+    if (socket && now - Math.max(contact.silentSince, opened) > HANG_UP_AFTER) {
       const old = socket;
       socket = null;
       old.close();
@@ -99,4 +92,5 @@ export function listen({ onMessage, onStyle, onSilence, shared }) {
 
   connect();
   setInterval(watch, 100);
+  return contact;
 }

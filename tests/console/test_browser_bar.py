@@ -1,6 +1,7 @@
 """The light bar in a real browser: what is drawn, at three sizes, by day and night, and when nothing is heard."""
 
 import functools
+import itertools
 import re
 import statistics
 from collections.abc import Callable, Iterator
@@ -137,7 +138,10 @@ def lit(page: Page, colour: str) -> list[float]:
     return list(
         page.evaluate(
             """name => {
-              const canvas = document.querySelector('#lightbar canvas'), pen = canvas.getContext('2d');
+              const shown = document.querySelector('#lightbar canvas'), canvas = document.createElement('canvas');
+              [canvas.width, canvas.height] = [shown.width, shown.height];
+              const pen = canvas.getContext('2d');
+              pen.drawImage(shown, 0, 0);
               const probe = document.createElement('canvas').getContext('2d');
               probe.fillStyle = getComputedStyle(document.getElementById('lightbar')).getPropertyValue(name).trim();
               probe.fillRect(0, 0, 1, 1);
@@ -171,7 +175,10 @@ def test_the_number_is_readable_at_arms_length(drive: Drive, page: Page) -> None
     expect(page.locator("#lightbar")).to_have_attribute("data-number", "88 cm")
     height = page.evaluate(
         """() => {
-          const canvas = document.querySelector('#lightbar canvas'), pen = canvas.getContext('2d');
+          const shown = document.querySelector('#lightbar canvas'), canvas = document.createElement('canvas');
+          [canvas.width, canvas.height] = [shown.width, shown.height];
+          const pen = canvas.getContext('2d');
+          pen.drawImage(shown, 0, 0);
           const from = canvas.width / 2 - 60, top = 26, { data } = pen.getImageData(from, top, 60, 58);
           const rows = [];
           for (let y = 0; y < 58; y++)
@@ -285,6 +292,37 @@ def test_nothing_is_fetched_from_elsewhere(drive: Drive, page: Page) -> None:
     own = re.compile(rf"(http|ws)://{drive.address.removeprefix('http://')}/|blob:|data:")
     assert len(drive.asked) > 5
     assert [url for url in drive.asked if not own.match(url)] == []
+
+
+# --- in a worker ---------------------------------------------------------------------------------------------------
+
+BUSY_MS = 1500
+LONGEST_GAP_MS = 700.0
+"""Half of the time for which the page is busy: whoever waits for the page misses all of it."""
+
+
+def test_the_bar_is_drawn_while_the_page_is_busy(page: Page) -> None:
+    assert page.evaluate("window.__lightbar.worker") is True
+    begun, ended = page.evaluate(
+        f"""() => {{
+          const begun = Date.now();
+          while (Date.now() - begun < {BUSY_MS});
+          return [begun, Date.now()];
+        }}"""
+    )
+    page.wait_for_function(f"window.__lightbar.timings.at(-1).drawn > {ended}")
+    drawn_at = [timing["drawn"] for timing in page.evaluate("window.__lightbar.timings")]
+    during = [begun, *(moment for moment in drawn_at if begun < moment < ended), ended]
+    assert max(after - before for before, after in itertools.pairwise(during)) < LONGEST_GAP_MS
+
+
+def test_a_browser_that_cannot_draw_from_a_worker_draws_on_the_page(drive: Drive, open_page: OpenPage) -> None:
+    drive.make = functools.partial(off_by, -0.4)
+    older = f"{WITHOUT_DRAWING}; delete HTMLCanvasElement.prototype.transferControlToOffscreen;"
+    page = open_page(drive.address, script=older)
+    expect(page.locator("#lightbar")).to_have_attribute("data-cross-track", "-0.400")
+    assert page.evaluate("window.__lightbar.worker") is False
+    assert lit(page, "--yellow")[1] > 0.005
 
 
 # --- how fast ------------------------------------------------------------------------------------------------------

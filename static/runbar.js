@@ -1,0 +1,68 @@
+// The bar's own life, from message to picture. It runs in a worker, so that it hears, draws and notices silence while the
+// page is busy with the 3D scene; in a browser that cannot draw from a worker it runs on the page.
+
+import { makeBars } from "./bars.js";
+import { listen } from "./live.js";
+
+const epoch = (moment) => (moment === null ? null : performance.timeOrigin + moment);
+
+/** Draws on `canvas` for good. `tell` gets news for the page: what stands on the canvas, and what it was drawn from. */
+export function runBar(canvas, tell) {
+  const style = { speed: "", zones: "gggyyyrr", guided: "tractor", ahead: "", sounds: false, start: null };
+  const bars = makeBars(canvas, style);
+  let state = "opening";
+  let message = null;
+  let fitted = false;
+
+  const reason = () => {
+    if (state === "guide") return null;
+    if (state === "silent") return "NO DATA";
+    const words = message?.r ?? "connecting";
+    return words.charAt(0).toUpperCase() + words.slice(1);
+  };
+
+  const show = (next, heard = null) => {
+    state = next;
+    if (!fitted) return;
+    const drawn = bars.draw(state, message, reason());
+    const done = performance.now();
+    tell({
+      state,
+      drawn,
+      style,
+      message: state === "silent" ? null : message,
+      connections: contact.connections,
+      lastHeard: epoch(contact.lastHeard),
+      silentSince: epoch(contact.silentSince),
+      timing: heard && {
+        sequence: message.q,
+        age: message.a ?? null,
+        sent: message.t,
+        drawn: epoch(done),
+        took: done - heard,
+      },
+    });
+  };
+
+  const contact = listen({
+    onMessage: (heardMessage, heard) => {
+      message = heardMessage;
+      show(message.s, heard);
+    },
+    onStyle: (changed) => {
+      const { start } = changed; // of another start of the console: page and viser may be of another version
+      if (start && style.start && start !== style.start) tell({ reload: true });
+      Object.assign(style, changed);
+    },
+    onSilence: () => show("silent"),
+    onShutOut: () => tell({ reload: true }),
+  });
+
+  return {
+    fit: (look) => {
+      fitted = true;
+      bars.fit(look);
+      show(state);
+    },
+  };
+}
