@@ -11,7 +11,7 @@ import shapely
 from guidance_app.documents import FieldDocument, Geometry, Implement, Job, Operation, Receiver, Tractor
 from guidance_app.geodesy import FieldFrame
 from guidance_app.guidance.planning import plan_operation, request_from_documents
-from guidance_app.model import Chunk, FloatArray, FixQuality
+from guidance_app.model import Chunk, FixQuality, FloatArray
 from guidance_app.simulation.receiver import Antenna, ReceiverSettings, SimulatedReceiver
 
 __all__ = ["Day", "day_of_work", "first_chunks"]

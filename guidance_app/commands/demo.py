@@ -4,7 +4,7 @@ import argparse
 import tempfile
 from pathlib import Path
 
-from guidance_app.commands.options import add_console_options, add_filter_option, replay_speed
+from guidance_app.commands.options import add_console_options, add_filter_option, notices_of, replay_speed
 from guidance_app.commands.serving import serve
 from guidance_app.runtime import ReplaySession
 from guidance_app.sources.file import load_log
@@ -36,6 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
     with tempfile.TemporaryDirectory(prefix="guidance-demo-") as folder:
         data = copy_sample(Path(folder))
         job = load_job(Store(data), SAMPLE_OPERATION)
-        log = load_log(data / SAMPLE_RECORDING / "receiver.nmea")
-        session = ReplaySession(job, log, arguments.filter, arguments.speed)
+        path = data / SAMPLE_RECORDING / "receiver.nmea"
+        log = load_log(path)
+        session = ReplaySession(job, log, arguments.filter, arguments.speed, notices_of(path))
         return serve(session, arguments, data, "playing the embedded sample, a simulated job")

@@ -11,7 +11,7 @@ from guidance_app.estimation.filters import FILTERS
 from guidance_app.exchange import ExchangeError
 from guidance_app.guidance.planning import PlanError
 from guidance_app.sources import SourceError
-from guidance_app.store import StoreError, data_folder, field_from_file
+from guidance_app.store import StoreError, data_folder, field_from_file, simulated_notice
 
 __all__ = [
     "UseError",
@@ -22,6 +22,7 @@ __all__ = [
     "chosen_data_folder",
     "job_from_options",
     "known_errors",
+    "notices_of",
     "replay_speed",
 ]
 
@@ -98,6 +99,12 @@ def job_from_options(arguments: argparse.Namespace) -> Job:
     return Job(
         tractor=tractor, implement=implement, receiver=Receiver(name="Receiver"), field=field, operation=operation
     )
+
+
+def notices_of(log: Path) -> tuple[str, ...]:
+    """What the console must say of a recording: that it is simulated, when it is."""
+    notice = simulated_notice(log)
+    return () if notice is None else (notice,)
 
 
 def replay_speed(text: str) -> float:

@@ -10,6 +10,7 @@ from guidance_app.commands.options import (
     add_job_options,
     chosen_data_folder,
     job_from_options,
+    notices_of,
     replay_speed,
 )
 from guidance_app.commands.serving import serve
@@ -44,5 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
         msg = f"{arguments.log} holds no position fix, nothing can be shown: see guidance-app inspect"
         raise UseError(msg)
     data = chosen_data_folder(arguments)
-    session = ReplaySession(job_from_options(arguments), log, arguments.filter, arguments.speed)
+    session = ReplaySession(
+        job_from_options(arguments), log, arguments.filter, arguments.speed, notices_of(arguments.log)
+    )
     return serve(session, arguments, data, f"replaying {arguments.log} ({log.duration:.0f} s)")

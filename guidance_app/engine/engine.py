@@ -53,11 +53,20 @@ NO_POSE: Changes = {"pose": None, "implement": None, "prediction": None, "guidan
 class Engine:
     """Holds what one session remembers between events. Not thread-safe; its snapshots are.
 
-    ``filter_name`` goes before the receiver document's choice. Raises ``ValueError`` for a filter that is not known.
+    ``filter_name`` goes before the receiver document's choice; ``notices`` are shown beside those of field and plan.
+    Raises ``ValueError`` for a filter that is not known.
     """
 
-    def __init__(self, job: Job, *, filter_name: str | None = None, settings: FilterSettings | None = None) -> None:
+    def __init__(
+        self,
+        job: Job,
+        *,
+        filter_name: str | None = None,
+        settings: FilterSettings | None = None,
+        notices: tuple[str, ...] = (),
+    ) -> None:
         self._job = job
+        self._told = notices
         receiver = job.receiver
         self._filter_name = filter_name or (receiver.filter if receiver.filter_on else OFF)
         self._filter = make_filter(self._filter_name, settings)
@@ -72,7 +81,7 @@ class Engine:
         self._raw_pose: Pose | None = None
         first = Snapshot(0, 0.0, LinkState(), look_ahead_s=self._look_ahead, filter_name=self._filter_name)
         self._members: Changes = {one.name: getattr(first, one.name) for one in fields(first)}
-        self._members |= self._work.shown_since(first, ())
+        self._members |= self._work.shown_since(first, ()) | {"notices": self._notices}
         self._snapshot = Snapshot(**self._members)
 
     @property
@@ -171,14 +180,14 @@ class Engine:
         try:
             measurement = measurement_from_fix(fix, self._attitude, self._frame, self._job.tractor)
         except ValueError as error:
-            return changes | NO_POSE | {"notices": (*self._work.notices, str(error))}
+            return changes | NO_POSE | {"notices": (*self._notices, str(error))}
         self._raw_pose = self._filter.step(measurement)
         return changes | self._guide(reported=fix.implement_down)
 
     def _guide(self, *, reported: bool | None) -> Changes:
         pose = self._marked(self._raw_pose)
         if pose is None:
-            return NO_POSE | {"notices": self._work.notices}
+            return NO_POSE | {"notices": self._notices}
         implement = self._implement.step(pose)
         prediction = self._predictor.step(pose, self._look_ahead)
         self._work.step(pose, implement, reported=reported)
@@ -188,7 +197,12 @@ class Engine:
 
     def _shown(self) -> Changes:
         """What there is to guide along, what is worked, and every offset in force."""
-        return self._work.shown_since(self._snapshot, () if self._mark is None else (self._mark,))
+        shown = self._work.shown_since(self._snapshot, () if self._mark is None else (self._mark,))
+        return shown | {"notices": self._notices}
+
+    @property
+    def _notices(self) -> tuple[str, ...]:
+        return (*self._told, *self._work.notices)
 
     def _marked(self, pose: Pose | None) -> Pose | None:
         """The pose with the driver's position offset."""

@@ -156,7 +156,6 @@ class WorkDone:
             "track": self._track.trail,
             "worked": self._coverage.worked,
             "offsets": (*marks, *lines),
-            "notices": self.notices,
         }
         ground = self._ground
         if ground is not None and snapshot.ground_version != self._version:

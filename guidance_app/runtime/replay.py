@@ -85,10 +85,17 @@ class _Checkpoint:
 class ReplaySession:
     """Drives the engine from a log at the chosen pace."""
 
-    def __init__(self, job: Job, source: FileLog, filter_name: str | None = None, speed: float = 1.0) -> None:
+    def __init__(
+        self,
+        job: Job,
+        source: FileLog,
+        filter_name: str | None = None,
+        speed: float = 1.0,
+        notices: tuple[str, ...] = (),
+    ) -> None:
         self.job = job
         self._log = source
-        self._engine = Engine(job, filter_name=filter_name)
+        self._engine = Engine(job, filter_name=filter_name, notices=notices)
         self._engine.step(SourceUp(0.0, source.description))
         self._pacer = Pacer(source.chunks, speed)
         self.replay = ReplayControl(self._pacer)

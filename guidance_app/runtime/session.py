@@ -28,8 +28,15 @@ Hearer = Callable[[Snapshot], None]
 class Session(Protocol):
     """What the console knows of a session, live or replayed. Every method may be called from any thread."""
 
-    job: Job
-    replay: "ReplayControl | None"
+    @property
+    def job(self) -> Job:
+        """The documents in use."""
+        ...
+
+    @property
+    def replay(self) -> "ReplayControl | None":
+        """Play, pause and seek; None when the source is live."""
+        ...
 
     def snapshot(self) -> Snapshot:
         """The newest snapshot."""

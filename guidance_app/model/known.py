@@ -1,0 +1,91 @@
+"""All that is known now: the state of the link, the offsets in force, and the snapshot."""
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from guidance_app.model.arrays import FloatArray
+from guidance_app.model.commands import OffsetKind, WorkMode
+from guidance_app.model.lines import Guidance, Pass, Plan
+from guidance_app.model.motion import Pose, Prediction
+from guidance_app.model.wire import Attitude, Fix
+from guidance_app.model.worked import CoverageTotals, Trail
+
+__all__ = [
+    "LinkState",
+    "LinkStatus",
+    "OffsetRecord",
+    "Snapshot",
+]
+
+
+class LinkStatus(StrEnum):
+    """What the driver sees of a receiver's link."""
+
+    CONNECTING = "connecting"
+    NO_DATA = "no data"
+    NO_SENTENCE = "data but no valid sentence"
+    NO_FIX = "no fix"
+    FIX = "fix"
+    DOWN = "down"
+    ENDED = "ended"
+
+
+@dataclass(frozen=True, slots=True)
+class LinkState:
+    """The state of one link, since when, and in words why."""
+
+    status: LinkStatus = LinkStatus.CONNECTING
+    since: float = 0.0
+    reason: str = ""
+    last_data: float | None = None
+    sentences: int = 0
+    rejected: int = 0
+    fixes: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class OffsetRecord:
+    """An offset in force. ``east``, ``north`` for a position offset; ``metres`` to the right for a line offset."""
+
+    kind: OffsetKind
+    arrival: float
+    metres: float = 0.0
+    east: float = 0.0
+    north: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Snapshot:
+    """All that is known now. Replaced whole; reading one needs no lock.
+
+    ``ground_version`` changes whenever field, passes or plan do, so that a reader compares numbers, not arrays.
+    ``generation`` changes when time has jumped back (a seek): what was drawn of ``track`` and ``worked`` is void then.
+    ``implement`` is the implement's own pose (east, north, heading) at its working point. ``origin_deg`` is the field
+    frame's origin (latitude, longitude); ``field_rings`` the boundary and its exclusions, shape (N, 2) each, closed.
+    """
+
+    sequence: int
+    arrival: float
+    link: LinkState
+    fix: Fix | None = None
+    fix_interval: float | None = None
+    attitude: Attitude | None = None
+    pose: Pose | None = None
+    implement: tuple[float, float, float] | None = None
+    prediction: Prediction | None = None
+    look_ahead_s: float = 1.5
+    guidance: Guidance | None = None
+    origin_deg: tuple[float, float] | None = None
+    field_rings: tuple[FloatArray, ...] = ()
+    passes: tuple[Pass, ...] = ()
+    plan: Plan | None = None
+    ground_version: int = 0
+    generation: int = 0
+    working: bool = False
+    work_mode: WorkMode = WorkMode.AUTO
+    totals: CoverageTotals = field(default_factory=CoverageTotals)
+    track: Trail | None = None
+    worked: Trail | None = None
+    offsets: tuple[OffsetRecord, ...] = ()
+    filter_name: str = ""
+    notices: tuple[str, ...] = ()

@@ -1,0 +1,50 @@
+"""What grows: worked ground, the driven track, and their sums."""
+
+from dataclasses import dataclass
+
+from guidance_app.model.arrays import FloatArray
+
+__all__ = [
+    "CoverageTotals",
+    "Strip",
+    "Trail",
+]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Strip:
+    """A bounded piece of worked ground: left and right edge of the implement, both of shape (N, 2), N at most 256.
+
+    A strip with the same ``index`` only ever grows until it is ``sealed``; a sealed one never changes.
+    """
+
+    index: int
+    left: FloatArray
+    right: FloatArray
+    pass_number: int | None
+    sealed: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Trail:
+    """What grows: sealed pieces in a shared append-only list, of which the first ``count`` belong to this snapshot.
+
+    ``pieces`` are arrays of shape (N, 2) for the track and ``Strip`` for worked ground; ``open_piece`` is the one
+    that still grows. A reader remembers how many it has seen and takes the rest.
+    """
+
+    pieces: list[FloatArray] | list[Strip]
+    count: int
+    open_piece: FloatArray | Strip | None
+
+
+@dataclass(frozen=True, slots=True)
+class CoverageTotals:
+    """Areas in m2. ``left`` is None without a field. ``headland`` is the part of ``worked`` outside the mainland."""
+
+    worked: float = 0.0
+    overlap: float = 0.0
+    left: float | None = None
+    headland: float = 0.0
+    distance: float = 0.0
+    working_s: float = 0.0
