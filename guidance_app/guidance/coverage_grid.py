@@ -1,13 +1,16 @@
 """Worked ground as bits of a turned grid, in tiles that exist only where work was done.
 
-The grid is turned against the first direction of work by atan(0.618), the slope that is worst approximated by
-fractions: along a strip's edge the cells are cut in all ways alike, so that counting centres is right on average,
-where a grid along the strips would be wrong by up to half a cell all the way. Copies share their tiles until one of
-them writes.
+Counting the cells whose centres were covered is right on average wherever an edge cuts the cells in all ways alike, but
+wrong by up to half a cell all the way where it runs along them or along their diagonals (0.5 % of a 12 m strip in the
+worst case). So the grid lies as far as it can from the first direction of work and from the field's longer edges, along
+which work is done: at 22.5 degrees if there is but one. Work in random other directions is wrong by 0.009 % (rms, 100 m
+strips of 12 m); one in three hundred of them hits an axis within its 0.1 degree.
+Copies share their tiles until one of them writes.
 """
 
 import copy
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,8 +32,11 @@ from guidance_app.model import FloatArray
 
 __all__ = ["CellCounts", "CoverageGrid", "Ground", "Patch"]
 
-TURN = math.atan((math.sqrt(5.0) - 1.0) / 2.0)
-"""Of the grid against the first direction of work."""
+LONG_EDGE = 0.05
+"""Of the field's outline: along shorter edges little is worked."""
+
+TRIED = np.radians(np.arange(0.0, 45.0, 0.25))
+"""Directions of the grid's axis that are compared; 45 degrees on, axes and diagonals repeat."""
 
 TilePlace = tuple[int, int]
 """Column and row of a tile."""
@@ -65,7 +71,7 @@ class _Axes:
 
     @staticmethod
     def along(east: float, north: float, heading: float, cell: float, ground: Ground) -> "_Axes":
-        turned = heading + TURN
+        turned = _apart_from([heading, *_edge_headings(ground.field)])
         bare = _Axes(east, north, math.sin(turned) / cell, math.cos(turned) / cell, None, None)
         field, mainland = bare._edges(ground.field), bare._edges(ground.mainland)
         return _Axes(east, north, bare.per_metre_along, bare.per_metre_across, field, mainland)
@@ -88,6 +94,24 @@ class _Axes:
             corners = np.array([self.cells(east, north) for east, north in ring.tolist()])
             edges.append(np.hstack([corners[:-1], corners[1:]]))
         return np.ascontiguousarray(np.vstack(edges)) if edges else np.empty((0, 4))
+
+
+def _apart_from(headings: Sequence[float]) -> float:
+    """The direction whose axes and diagonals lie farthest from all headings."""
+    eighth = math.pi / 4
+    gaps = np.abs((TRIED[:, None] - np.array(headings) + 0.5 * eighth) % eighth - 0.5 * eighth)
+    return float(TRIED[np.argmax(gaps.min(axis=1))])
+
+
+def _edge_headings(field: Area | None) -> list[float]:
+    if field is None or field.is_empty:
+        return []
+    headings: list[float] = []
+    for part in shapely.get_parts(field):
+        east, north = np.diff(shapely.get_coordinates(part.exterior), axis=0).T
+        length = np.hypot(east, north)
+        headings += np.arctan2(east, north)[length > LONG_EDGE * length.sum()].tolist()
+    return headings
 
 
 def _rings(part: shapely.Polygon) -> list[shapely.LinearRing]:
