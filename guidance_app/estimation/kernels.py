@@ -32,6 +32,9 @@ from guidance_app.model import FloatArray
 STATES = 9
 EAST, NORTH, HEADING, SPEED, CURVATURE, GYRO_BIAS, SLIP, DRIFT_EAST, DRIFT_NORTH = range(STATES)
 
+SIDEWAYS = 2.0
+"""No tractor turns with more than so many m/s2 sideways: at 12 m/s on the road, not tighter than 72 m."""
+
 ACCELERATION, CURVATURE_SD, MEMORY = range(3)
 """Columns of a motion model."""
 
@@ -144,7 +147,8 @@ def add_process_noise(x: FloatArray, p: FloatArray, dt: float, model: FloatArray
     p[SPEED, SPEED] += q * dt
     moving = min(1.0, abs(x[SPEED]) / 0.3)
     p[HEADING, HEADING] += (common[HEADING_WALK] * moving) ** 2 * dt
-    bend = model[CURVATURE_SD] ** 2 * -math.expm1(-2.0 * dt / model[MEMORY])
+    sharpest = min(model[CURVATURE_SD], SIDEWAYS / max(x[SPEED] * x[SPEED], 0.01))
+    bend = sharpest**2 * -math.expm1(-2.0 * dt / model[MEMORY])
     way = x[SPEED] * dt
     p[CURVATURE, CURVATURE] += bend
     p[HEADING, CURVATURE] += 0.5 * way * bend

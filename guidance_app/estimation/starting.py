@@ -24,6 +24,8 @@ DRIVING = 0.5
 AGREEING = math.radians(20)
 SENSOR_SD = math.radians(2.0)
 FASTEST = 20.0
+FASTEST_BACK = 3.0
+"""Nobody backs up faster, in m/s."""
 REVERSAL = math.radians(110)
 """In the few seconds of being lost no tractor turns as far."""
 
@@ -39,7 +41,7 @@ class Departure:
 
     def as_before(self, heading: float) -> "Departure":
         """The same way, driven backwards if it leads away from where the body pointed a moment ago."""
-        if abs(wrap_pi(self.heading - heading)) < REVERSAL:
+        if abs(wrap_pi(self.heading - heading)) < REVERSAL or self.speed > FASTEST_BACK:
             return self
         return Departure(wrap_pi(self.heading + math.pi), self.heading_sd, -self.speed, self.speed_sd)
 

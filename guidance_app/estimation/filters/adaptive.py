@@ -231,10 +231,11 @@ def _lost(state: _State) -> _Before:
     x, p, w = state.belief
     bias = float(w @ x[:, GYRO_BIAS])
     bias_sd = math.sqrt(float(w @ p[:, GYRO_BIAS, GYRO_BIAS])) + 1e-3
+    pointed = state.pose.heading if state.pose.heading_known else None
     waiting = Waiting()
     for refused in state.rejected[:-1]:
         waiting = waiting.to(refused.z)
-    return _Before(waiting, state.pose, bias, bias_sd, state.still, state.pose.heading)
+    return _Before(waiting, state.pose, bias, bias_sd, state.still, pointed)
 
 
 def _advanced(state: _State, z: Measurement, noise: ReceiverNoise, settings: AdaptiveSettings) -> _State:
