@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator
 from guidance_app.batch.inspection import time_text
 from guidance_app.documents import Job
 from guidance_app.engine import Engine
-from guidance_app.estimation.filter import FilterSettings
+from guidance_app.estimation.filter import Filter, FilterSettings
 from guidance_app.geodesy import FieldFrame
 from guidance_app.model import Chunk, Event, Fix, Pose, Snapshot, SourceDown
 
@@ -41,10 +41,14 @@ COLUMNS = (
 
 
 def processed(
-    chunks: Iterable[Chunk], job: Job, filter_name: str | None = None, settings: FilterSettings | None = None
+    chunks: Iterable[Chunk],
+    job: Job,
+    filter_name: str | None = None,
+    settings: FilterSettings | None = None,
+    estimator: Filter | None = None,
 ) -> Iterator[Snapshot]:
-    """The snapshot after each fix of a log."""
-    engine = Engine(job, filter_name=filter_name, settings=settings)
+    """The snapshot after each fix of a log. ``estimator`` goes before the filter's name."""
+    engine = Engine(job, filter_name=filter_name, settings=settings, estimator=estimator)
     seen: Fix | None = None
     for event in _with_end(chunks):
         for snapshot in engine.steps(event):

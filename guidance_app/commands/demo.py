@@ -4,7 +4,13 @@ import argparse
 import tempfile
 from pathlib import Path
 
-from guidance_app.commands.options import add_console_options, add_filter_option, notices_of, replay_speed
+from guidance_app.commands.options import (
+    add_console_options,
+    add_filter_option,
+    filter_settings,
+    notices_of,
+    replay_speed,
+)
 from guidance_app.commands.serving import serve
 from guidance_app.runtime import ReplaySession
 from guidance_app.sources.file import load_log
@@ -38,5 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
         job = load_job(Store(data), SAMPLE_OPERATION)
         path = data / SAMPLE_RECORDING / "receiver.nmea"
         log = load_log(path)
-        session = ReplaySession(job, log, arguments.filter, arguments.speed, notices_of(path))
+        session = ReplaySession(
+            job, log, arguments.filter, arguments.speed, notices_of(path), filter_settings(arguments.settings)
+        )
         return serve(session, arguments, data, "playing the embedded sample, a simulated job")

@@ -97,7 +97,11 @@ def _rows(arguments: argparse.Namespace) -> list[Row]:
         chosen.remove("real")
     with spread_over(arguments.processes) as spread:
         wish = _Wish(arguments.seeds, arguments.processes, spread, logs)
-        return [row for name in chosen for row in PROTOCOLS[name](wish)]
+        rows: list[Row] = []
+        for name in chosen:
+            print(f"evaluate: {name} ...", file=sys.stderr, flush=True)
+            rows += PROTOCOLS[name](wish)
+        return rows
 
 
 def _gomez_gil(wish: _Wish) -> list[Row]:

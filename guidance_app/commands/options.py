@@ -4,9 +4,12 @@ import argparse
 import os
 from pathlib import Path
 
+from pydantic import ValidationError
+
 from guidance_app.boundary import BoundaryError
 from guidance_app.console.address import ConsoleError
 from guidance_app.documents import FieldDocument, Implement, Job, Method, Operation, Receiver, Tractor
+from guidance_app.estimation.filter import FilterSettings
 from guidance_app.estimation.filters import FILTERS
 from guidance_app.exchange import ExchangeError
 from guidance_app.guidance.planning import PlanError
@@ -20,6 +23,7 @@ __all__ = [
     "add_filter_option",
     "add_job_options",
     "chosen_data_folder",
+    "filter_settings",
     "job_from_options",
     "known_errors",
     "notices_of",
@@ -66,6 +70,25 @@ def add_console_options(parser: argparse.ArgumentParser) -> None:
 def add_filter_option(parser: argparse.ArgumentParser) -> None:
     """``--filter``."""
     parser.add_argument("--filter", choices=sorted(FILTERS), metavar="NAME", help=", ".join(FILTERS))
+    parser.add_argument(
+        "--settings", type=Path, metavar="FILE", help="filter settings, as guidance-app tune writes them"
+    )
+
+
+def filter_settings(path: Path | None) -> FilterSettings | None:
+    """The filter settings of a file; None without one. Raises ``UseError`` that names field, value and bound."""
+    if path is None:
+        return None
+    try:
+        return FilterSettings.model_validate_json(path.read_bytes())
+    except OSError as error:
+        msg = f"the filter settings {path} cannot be read: {error.strerror}"
+        raise UseError(msg) from error
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"]) or "the document"
+        msg = f"the filter settings {path} are refused: {where} is {first['input']!r}, {first['msg'].lower()}"
+        raise UseError(msg) from error
 
 
 def add_job_options(parser: argparse.ArgumentParser) -> None:

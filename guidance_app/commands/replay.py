@@ -9,6 +9,7 @@ from guidance_app.commands.options import (
     add_data_option,
     add_job_options,
     chosen_data_folder,
+    filter_settings,
     job_from_options,
     notices_of,
     replay_speed,
@@ -46,6 +47,11 @@ def run(arguments: argparse.Namespace) -> int:
         raise UseError(msg)
     data = chosen_data_folder(arguments)
     session = ReplaySession(
-        job_from_options(arguments), log, arguments.filter, arguments.speed, notices_of(arguments.log)
+        job_from_options(arguments),
+        log,
+        arguments.filter,
+        arguments.speed,
+        notices_of(arguments.log),
+        filter_settings(arguments.settings),
     )
     return serve(session, arguments, data, f"replaying {arguments.log} ({log.duration:.0f} s)")

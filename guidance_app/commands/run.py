@@ -7,6 +7,7 @@ from guidance_app.commands.options import (
     add_data_option,
     add_job_options,
     chosen_data_folder,
+    filter_settings,
     job_from_options,
 )
 from guidance_app.commands.serving import serve
@@ -35,5 +36,5 @@ def run(arguments: argparse.Namespace) -> int:
     """Drives until stopped."""
     source = open_source(arguments.source)
     data = chosen_data_folder(arguments)
-    session = LiveSession(job_from_options(arguments), source, arguments.filter)
+    session = LiveSession(job_from_options(arguments), source, arguments.filter, filter_settings(arguments.settings))
     return serve(session, arguments, data, f"reading {source.description}")

@@ -14,7 +14,7 @@ from guidance_app.decode.decoder import Decoder
 from guidance_app.documents import Job
 from guidance_app.engine.link import after_chunk, after_down, after_up
 from guidance_app.engine.work_done import WorkDone
-from guidance_app.estimation.filter import FilterSettings
+from guidance_app.estimation.filter import Filter, FilterSettings
 from guidance_app.estimation.filters import make_filter
 from guidance_app.estimation.prediction import Predictor
 from guidance_app.estimation.reference_point import ImplementPoint, measurement_from_fix
@@ -53,8 +53,9 @@ NO_POSE: Changes = {"pose": None, "implement": None, "prediction": None, "guidan
 class Engine:
     """Holds what one session remembers between events. Not thread-safe; its snapshots are.
 
-    ``filter_name`` goes before the receiver document's choice; ``notices`` are shown beside those of field and plan.
-    Raises ``ValueError`` for a filter that is not known.
+    ``filter_name`` goes before the receiver document's choice; ``notices`` are shown beside those of field and plan;
+    ``estimator`` goes before both (poses that are known beforehand, as those of the smoother). Raises ``ValueError``
+    for a filter that is not known.
     """
 
     def __init__(
@@ -64,12 +65,13 @@ class Engine:
         filter_name: str | None = None,
         settings: FilterSettings | None = None,
         notices: tuple[str, ...] = (),
+        estimator: Filter | None = None,
     ) -> None:
         self._job = job
         self._told = notices
         receiver = job.receiver
         self._filter_name = filter_name or (receiver.filter if receiver.filter_on else OFF)
-        self._filter = make_filter(self._filter_name, settings)
+        self._filter = estimator or make_filter(self._filter_name, settings)
         self._decoders: dict[str, Decoder] = {}
         self._attitude: Attitude | None = None
         self._implement = ImplementPoint(job.implement)

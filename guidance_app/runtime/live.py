@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 from guidance_app.documents import Job
 from guidance_app.engine import Engine
+from guidance_app.estimation.filter import FilterSettings
 from guidance_app.model import Chunk, Command, Commanded, Event, Snapshot, SourceDown
 from guidance_app.runtime.session import Hearer, Publisher
 from guidance_app.sources import Source
@@ -25,10 +26,12 @@ class LiveSession:
 
     replay = None
 
-    def __init__(self, job: Job, source: Source, filter_name: str | None = None) -> None:
+    def __init__(
+        self, job: Job, source: Source, filter_name: str | None = None, settings: FilterSettings | None = None
+    ) -> None:
         self.job = job
         self._source = source
-        self._engine = Engine(job, filter_name=filter_name)
+        self._engine = Engine(job, filter_name=filter_name, settings=settings)
         self._publisher = Publisher(self._engine.snapshot)
         self._events: queue.SimpleQueue[Event | None] = queue.SimpleQueue()
         self._stop = threading.Event()

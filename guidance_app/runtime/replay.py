@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 from guidance_app.documents import Job
 from guidance_app.engine import Engine
+from guidance_app.estimation.filter import FilterSettings
 from guidance_app.model import Chunk, Command, Commanded, Event, SetLookAhead, Snapshot, SourceDown, SourceUp
 from guidance_app.runtime.session import Hearer, Publisher
 from guidance_app.sources.file import FileLog
@@ -92,10 +93,11 @@ class ReplaySession:
         filter_name: str | None = None,
         speed: float = 1.0,
         notices: tuple[str, ...] = (),
+        settings: FilterSettings | None = None,
     ) -> None:
         self.job = job
         self._log = source
-        self._engine = Engine(job, filter_name=filter_name, notices=notices)
+        self._engine = Engine(job, filter_name=filter_name, settings=settings, notices=notices)
         self._engine.step(SourceUp(0.0, source.description))
         self._pacer = Pacer(source.chunks, speed)
         self.replay = ReplayControl(self._pacer)
