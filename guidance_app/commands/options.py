@@ -6,6 +6,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from guidance_app.bench.errors import BenchError
 from guidance_app.boundary import BoundaryError
 from guidance_app.console.address import ConsoleError
 from guidance_app.documents import FieldDocument, Implement, Job, Method, Operation, Receiver, Tractor
@@ -39,7 +40,7 @@ class UseError(ValueError):
 
 def known_errors() -> tuple[type[Exception], ...]:
     """Errors whose message is a sentence for the person at the terminal; each ends the command with status 2."""
-    return (UseError, SourceError, StoreError, ConsoleError, PlanError, ExchangeError, BoundaryError)
+    return (UseError, SourceError, StoreError, ConsoleError, PlanError, ExchangeError, BoundaryError, BenchError)
 
 
 def add_data_option(parser: argparse.ArgumentParser) -> None:
