@@ -14,12 +14,13 @@ import numpy as np
 import shapely
 from shapely import LineString, Polygon
 
+from guidance_app.guidance.blunting import eased
 from guidance_app.guidance.lap import Corner, Lap
 from guidance_app.guidance.request import PlanRequest
-from guidance_app.guidance.ring import Ring
+from guidance_app.guidance.ring import LONG, Ring
 from guidance_app.model import FloatArray
 
-__all__ = ["Headland", "Lap", "default_depth", "headland_of", "parts_of"]
+__all__ = ["Headland", "Lap", "default_depth", "free_ground", "headland_of", "parts_of"]
 
 ARC = 16
 """Chords in a quarter circle of a rounded corner: 7 mm from the circle at a radius of 6 m."""
@@ -27,16 +28,19 @@ ARC = 16
 SMALLEST = 1.0
 """Square metres; smaller leftovers of an offset are not ground."""
 
-SHORTEST = 0.05
-"""Metres between neighbouring points of a lap."""
-
-ON_THE_LINE = 0.03
+ON_THE_LINE = 0.02
 """Metres within which a point counts as lying on a line."""
 
-BEND = math.radians(3.0)
-"""A boundary that turns away by less at a corner is straight there."""
+BEND = math.radians(10.0)
+"""Where the boundary turns away by less at a corner, a lap need not swing out: blunting it costs a centimetre."""
 
-RADIUS_MARGIN = 1.002
+MOST_ROUND = math.radians(165.0)
+"""Half the angle of the longest arc."""
+
+BLUNT = 0.3
+"""Metres within which a boundary's corners count as one."""
+
+RADIUS_MARGIN = 1.05
 """Laps are laid on circles wider by this, so that their chords do not bend more than the turning radius."""
 
 WORTH = 0.2
@@ -44,6 +48,9 @@ WORTH = 0.2
 
 LIFT = 1.0
 """A corner is followed until the lap is this near to the next side, in halves of the working width."""
+
+RUN_OUT = 1.5
+"""Metres after a corner within which its next side is looked for; a bent one is then followed from there."""
 
 STEP = 0.25
 """Metres between the places where a side may begin."""
@@ -99,59 +106,120 @@ def _count_and_depth(request: PlanRequest, rest: float) -> tuple[int, float]:
 def _laps_at(ground: Polygon, place: int, inset: float, request: PlanRequest) -> Iterator[Lap]:
     """The rings at one distance from the boundary."""
     radius = request.path_radius * RADIUS_MARGIN
-    free = ground.buffer(-inset, quad_segs=ARC)
-    if inset < radius:
-        free = free.difference(_swings(ground, inset, radius))
+    free = free_ground(ground, inset, radius)
     drivable = shapely.orient_polygons(free.buffer(-radius, quad_segs=ARC).buffer(radius, quad_segs=ARC))
-    cuts = parts_of(free.difference(drivable), 0.1) if request.square_corners and request.reverse_allowed else ()
+    cuts = (
+        parts_of(free.difference(drivable.buffer(ON_THE_LINE)), 0.05)
+        if request.square_corners and request.reverse_allowed
+        else ()
+    )
     corners = _Corners(ground, cuts, request)
     for part in parts_of(drivable):
-        for ring in (part.exterior, *part.interiors):
-            points = _driven(ring, clockwise=request.laps_clockwise)
-            yield corners.lap(place, points)
+        for number, ring in enumerate((part.exterior, *part.interiors)):
+            if ring.length < 2 * radius:
+                continue
+            points = eased(shapely.get_coordinates(ring)[:-1], request.path_radius)
+            if points is None and number:
+                wide = _round(ground, Polygon(ring), radius)
+                points = None if wide is None else eased(wide, request.path_radius)
+            if points is None:
+                print("NOT EASED", place, number, ring.length)
+                continue
+            yield corners.lap(place, _driven(points, clockwise=request.laps_clockwise))
+
+
+def _round(ground: Polygon, within: Polygon, radius: float) -> FloatArray | None:
+    """A wide lap round the obstacles within a lap, as a ring with the ground on its left."""
+    obstacles = [hole for hole in map(Polygon, ground.interiors) if within.intersects(hole)]
+    if not obstacles:
+        return None
+    wide = shapely.union_all(obstacles).convex_hull.buffer(radius, quad_segs=ARC)
+    return shapely.get_coordinates(shapely.orient_polygons(wide).exterior)[:0:-1]
+
+
+def free_ground(ground: Polygon, inset: float, radius: float) -> shapely.Geometry:
+    """What lies ``inset`` inside, less the circles that go round where the boundary turns away too sharply."""
+    free = ground.buffer(-inset, quad_segs=ARC)
+    return free if inset >= radius else free.difference(_swings(ground, inset, radius))
 
 
 def _swings(ground: Polygon, inset: float, radius: float) -> shapely.Geometry:
-    """Circles that a lap has to go round where the boundary turns away from it too sharply."""
-    discs: list[shapely.Geometry] = []
-    for ring in (ground.exterior, *ground.interiors):
-        depth = radius - inset
-        if ring is not ground.exterior:
-            circle = shapely.minimum_bounding_circle(ring)
-            reach = math.sqrt(circle.area / math.pi)
-            if reach + inset <= radius:
-                discs.append(circle.centroid.buffer(radius, quad_segs=ARC))
+    """Pieces of circles round which a lap has to go where the boundary turns away from it too sharply."""
+    pieces: list[shapely.Geometry] = []
+    for number, ring in enumerate((ground.exterior, *ground.interiors)):
+        if number:
+            core = _core(ring)
+            if shapely.hausdorff_distance(core, ring) + inset <= radius:
+                pieces.append(core.buffer(radius, quad_segs=ARC))
                 continue
-            depth = min(depth, reach)
-        points, outward = _corners_away(ring)
-        discs.extend(shapely.buffer(shapely.points(points + outward * depth), radius, quad_segs=ARC))
-    return shapely.union_all(discs) if discs else Polygon()
+        pieces.extend(_segments(shapely.simplify(ring, BLUNT), inset, radius))
+    return shapely.union_all(pieces) if pieces else Polygon()
 
 
-def _corners_away(ring: shapely.LinearRing) -> tuple[FloatArray, FloatArray]:
-    """Corners (N, 2) where the ground's boundary turns away from the ground, and unit vectors out of the ground.
+def _core(ring: shapely.LinearRing) -> shapely.Geometry:
+    """The middle line of a small obstacle: round it a lap is an oval."""
+    corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(ring))
+    sides = corners[1:3] - corners[:2]
+    lengths = np.hypot(sides[:, 0], sides[:, 1])
+    long, short = int(np.argmax(lengths)), float(lengths.min())
+    middle = (corners[0] + corners[2]) / 2
+    half = sides[long] / lengths[long] * (lengths[long] - short) / 2
+    return shapely.linestrings(np.array([middle - half, middle + half])) if np.any(half) else shapely.points(middle)
 
-    The ground lies left of the ring, so such a corner bends to the right.
+
+def _segments(ring: shapely.LinearRing, inset: float, radius: float) -> Iterator[Polygon]:
+    """A piece of a circle for each tip where the boundary turns away; the ground lies left of the ring.
+
+    The circle lies ``inset`` off the tip's corners. Its arc ends where it is nearer to the edges than the lap is.
     """
     points = shapely.get_coordinates(ring)[:-1]
     before = points - np.roll(points, 1, axis=0)
     after = np.roll(before, -1, axis=0)
     yaw = np.arctan2(before[:, 1], before[:, 0])
     turn = np.mod(np.arctan2(after[:, 1], after[:, 0]) - yaw + np.pi, 2 * np.pi) - np.pi
+    depth = radius - inset
+    for tip in _tips(points, turn, 1.8 * depth):
+        half = min(-float(turn[tip].sum()) / 2, MOST_ROUND / 2)
+        inward = float(yaw[tip[0]]) - half + math.pi / 2
+        out = -np.array([math.cos(inward), math.sin(inward)])
+        middle = (points[tip[0]] + points[tip[-1]]) / 2
+        away = middle - points[tip]
+        along = away @ out
+        room = depth**2 - (away**2).sum(axis=1) + along**2
+        if (room < 0).any():
+            continue
+        centre = middle + float((np.sqrt(room) - along).min()) * out
+        off_edge = depth * math.cos(half) + inset
+        reach = min(half + math.acos(min(max(off_edge / radius, 0.0), 1.0)) + BEND, MOST_ROUND)
+        angles = inward + reach * np.linspace(-1.0, 1.0, 4 * ARC + 1)
+        yield Polygon(centre + radius * np.column_stack([np.cos(angles), np.sin(angles)]))
+
+
+def _tips(points: FloatArray, turn: FloatArray, widest: float) -> Iterator[list[int]]:
+    """Corners where the boundary turns away, by their places; those that follow closely on each other are one tip."""
     away = turn < -BEND
-    out = (yaw + turn / 2 - np.pi / 2)[away]
-    return points[away], np.column_stack([np.cos(out), np.sin(out)])
+    count = len(points)
+    begin = next((place for place in range(count) if not away[place - 1]), 0)
+    tip: list[int] = []
+    for place in (each % count for each in range(begin, begin + count)):
+        if tip and (not away[place] or math.dist(points[place], points[tip[0]]) > widest):
+            yield tip
+            tip = []
+        if away[place]:
+            tip.append(place)
+    if tip:
+        yield tip
 
 
-def _driven(ring: shapely.LinearRing, *, clockwise: bool) -> FloatArray:
+def _driven(points: FloatArray, *, clockwise: bool) -> FloatArray:
     """Points of a ring with the ground on its left, in driving order, from the middle of its longest straight."""
-    points = shapely.get_coordinates(shapely.simplify(ring, 0.005))[:-1]
-    apart = np.hypot(*(points - np.roll(points, 1, axis=0)).T)
-    points = points[apart > SHORTEST]
     if clockwise:
         points = points[::-1]
     following = np.roll(points, -1, axis=0)
-    longest = int(np.argmax(np.hypot(*(following - points).T)))
+    steps = np.hypot(*(following - points).T)
+    longest = int(np.argmax(steps))
+    if steps[longest] < LONG:
+        return points
     middle = (points[longest] + following[longest]) / 2
     return np.concatenate([[middle], np.roll(points, -longest - 1, axis=0)])
 
@@ -164,6 +232,7 @@ class _Corners:
 
     def __init__(self, ground: Polygon, cuts: tuple[Polygon, ...], request: PlanRequest) -> None:
         self._ground = ground.buffer(ON_THE_LINE)
+        self._rings = [ground.exterior, *ground.interiors]
         self._cuts = cuts
         self._half_width = request.width / 2
         self._half_length = request.length / 2
@@ -173,28 +242,34 @@ class _Corners:
 
     def lap(self, place: int, points: FloatArray) -> Lap:
         """The lap along the closed ``points``."""
-        ring = LineString(np.vstack([points, points[:1]]))
-        found = (self._corner(ring, cut) for cut in self._cuts)
+        line = LineString(np.vstack([points, points[:1]]))
+        ring = Ring(points)
+        found = (self._corner(ring, line, cut) for cut in self._cuts)
         corners = sorted((each for each in found if each is not None), key=lambda corner: corner.end)
-        return Lap(place, Ring(points), tuple(_apart(corners)))
+        nest = int(np.argmin(shapely.distance(self._rings, line)))
+        return Lap(place, nest, ring, tuple(_apart(corners)))
 
-    def _corner(self, ring: LineString, cut: Polygon) -> Corner | None:
+    def _corner(self, ring: Ring, line: LineString, cut: Polygon) -> Corner | None:
         """The corner that the lap cuts off, if it is worth backing up for."""
         tips = shapely.get_coordinates(cut.exterior)
-        apart = shapely.distance(ring, shapely.points(tips))
-        touching = tips[apart < ON_THE_LINE]
+        apart = shapely.distance(line, shapely.points(tips))
+        touching = tips[apart < 2 * ON_THE_LINE]
         deepest = int(np.argmax(apart))
         if apart[deepest] * self._growth < self._worth or len(touching) < 2:
             return None
-        along = shapely.line_locate_point(ring, shapely.points(touching))
-        begin, end = float(along.min()), float(along.max())
-        here = np.array(ring.interpolate(end).coords[0])
-        ahead = np.array(ring.interpolate(min(end + 0.2, ring.length)).coords[0])
+        along = shapely.line_locate_point(line, shapely.points(touching))
+        first, last = np.searchsorted(ring.along, [along.min() - ON_THE_LINE, along.max() - ON_THE_LINE])
+        last = _straight_from(ring, int(last))
+        if last is None:
+            return None
+        here, ahead = ring.points[last], ring.at(ring.along[last : last + 1] + LONG)[0]
         direction = (ahead - here) / np.hypot(*(ahead - here))
         metres = self._back(here, direction, float(np.hypot(*(tips[deepest] - here))))
         if metres is None:
             return None
-        return Corner(self._lift(ring, (begin, end), here, direction), end, here - metres * direction)
+        arc = slice(first, last + 1)
+        lift = self._lift(ring.along[arc], ring.points[arc] - here, direction)
+        return Corner(lift, float(ring.along[last]), here - metres * direction)
 
     def _back(self, here: FloatArray, direction: FloatArray, tip: float) -> float | None:
         """How far the implement stays inside when it is backed up from the corner's end along the next side."""
@@ -206,13 +281,19 @@ class _Corners:
         steps = len(metres) if inside.all() else int(np.argmin(inside))
         return float(metres[steps - 1]) if steps > 1 else None
 
-    def _lift(self, ring: LineString, arc: tuple[float, float], here: FloatArray, direction: FloatArray) -> float:
+    def _lift(self, along: FloatArray, points: FloatArray, direction: FloatArray) -> float:
         """Where the lap has come into the swath of the next side, so that the implement may be lifted."""
-        along = np.arange(arc[0], arc[1], STEP)
-        points = shapely.get_coordinates(shapely.line_interpolate_point(ring, along))
-        aside = np.abs((points - here) @ np.array([-direction[1], direction[0]]))
-        within = aside <= LIFT * self._half_width
-        return float(along[int(np.argmax(within))]) if within.any() else arc[1]
+        aside = np.abs(points @ np.array([-direction[1], direction[0]]))
+        return float(along[int(np.argmax(aside <= LIFT * self._half_width))])
+
+
+def _straight_from(ring: Ring, place: int) -> int | None:
+    """The point from which the lap runs straight after a corner, or as near to straight as it comes."""
+    following = np.append(ring.along[1:], ring.length)
+    for number in range(place, len(following)):
+        if following[number] - ring.along[number] > LONG or ring.along[number] - ring.along[place] > RUN_OUT:
+            return number
+    return None
 
 
 def _apart(corners: list[Corner]) -> Iterator[Corner]:

@@ -38,6 +38,23 @@ class Joiner:
                 yield from _joining(turns[place - 1], task.number)
             yield _worked(task)
 
+    def round_tasks(self, laps: Sequence[Lap], last: FloatArray | None, number: int, *, inward: bool) -> list[Task]:
+        """All laps, those about one ring of the boundary after each other, the nearest such nest next."""
+        nests: dict[int, list[Lap]] = {}
+        for lap in sorted(laps, key=lambda lap: lap.place, reverse=not inward):
+            nests.setdefault(lap.nest, []).append(lap)
+        tasks: list[Task] = []
+        while nests:
+            nest = min(nests, key=lambda each: _apart(nests[each][0], last))
+            for lap in nests.pop(nest):
+                tasks.extend(self.lap_tasks(lap, last, number + len(tasks)))
+                last = tasks[-1].last
+        return tasks
+
+    def sides(self, lap: Lap) -> list[Task]:
+        """The sides of a lap, begun anywhere."""
+        return _sides(lap, 0.0, 0, None)
+
     def lap_tasks(self, lap: Lap, last: FloatArray | None, number: int) -> list[Task]:
         """The sides of a lap, begun where it is reached soonest from the pose ``last``."""
         poses, along = lap.poses(LAP_STEP)
@@ -67,6 +84,12 @@ class Joiner:
             self._ways.way(before.last, after.first) if turn is None else turn
             for turn, (before, after) in zip(known, pairs, strict=True)
         ]
+
+
+def _apart(lap: Lap, last: FloatArray | None) -> float:
+    if last is None:
+        return float(lap.nest)
+    return float(np.hypot(*(lap.points - last[:2]).T).min())
 
 
 def _sides(lap: Lap, begin: float, number: int, approach: Turn | None) -> list[Task]:

@@ -39,9 +39,11 @@ class Side:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Lap:
-    """One ring to drive. ``place`` counts from the boundary, from 0."""
+    """One ring to drive. ``place`` counts from the boundary, from 0; ``nest`` says which of the ground's rings is the
+    nearest, 0 for the outer boundary."""
 
     place: int
+    nest: int
     line: Ring
     corners: tuple[Corner, ...]
 
@@ -52,7 +54,7 @@ class Lap:
 
     def poses(self, step: float) -> tuple[FloatArray, FloatArray]:
         """Poses (M, 3) at which the lap may be begun, and how far along each is; not where the implement is up."""
-        along = np.arange(0.0, self.line.length, step)
+        along = self.line.places(step)
         for corner in self.corners:
             along = along[(along < corner.lift) | (along > corner.end)]
         return self.line.poses(along), along

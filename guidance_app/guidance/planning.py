@@ -8,16 +8,22 @@ from guidance_app.guidance.costs import costs_of
 from guidance_app.guidance.direction import pass_heading
 from guidance_app.guidance.headland import headland_of, parts_of
 from guidance_app.guidance.joining import Joiner
+from guidance_app.guidance.leftover import leftovers
+from guidance_app.guidance.leftover import runs_of as leftover_runs
 from guidance_app.guidance.patterns import METHODS
 from guidance_app.guidance.request import PlanError, PlanRequest, request_from_documents
 from guidance_app.guidance.room import Room
-from guidance_app.guidance.route import Cell, route
+from guidance_app.guidance.route import Cell, Way, route, runs_of
+from guidance_app.guidance.swaths import swath, united
 from guidance_app.guidance.task import Task
 from guidance_app.guidance.turns import Turner
 from guidance_app.guidance.ways import Ways
 from guidance_app.model import FloatArray, Plan
 
 __all__ = ["PlanError", "PlanRequest", "plan_operation", "request_from_documents"]
+
+ROUNDS = 3
+"""Times that leftovers are looked for: a bent one is worked by one straight pass after another."""
 
 SMALLEST_FIELD = 10.0
 """Square metres; less is not a field."""
@@ -46,12 +52,23 @@ def plan_operation(polygon: Polygon, request: PlanRequest) -> Plan:
         warnings.append("the turning space leaves no mainland: the field is worked in laps only")
     ways = Ways(turner, [lap.points for lap in headland.laps], headland.mainland)
     joiner = Joiner(turner, ways)
+    choices: list[list[Way]] = [list(runs_of(cell, method.pass_order(len(cell.pieces), options))) for cell in cells]
+    worked = united(
+        [swath(task, request.width) for lap in headland.laps for task in joiner.sides(lap)]
+        + [swath(task, request.width) for ways_in in choices for task in ways_in[0].tasks(0)]
+    )
+    for _ in range(ROUNDS):
+        rest = leftovers(ground, worked, room, request)
+        if not rest:
+            break
+        more = [list(leftover_runs(each)) for each in rest]
+        choices.extend(more)
+        worked = united([worked, *(swath(task, request.width) for way in more for task in way[0].tasks(0))])
     tasks: list[Task] = []
-    for run in route(cells, lambda count: method.pass_order(count, options), request):
+    for run in route(choices, request):
         tasks.extend(run.tasks(len(tasks)))
-    number = len(tasks)
-    for lap in headland.laps[::-1]:
-        tasks.extend(joiner.lap_tasks(lap, tasks[-1].last if tasks else None, len(tasks) + 1))
+    last = tasks[-1].last if tasks else None
+    tasks.extend(joiner.round_tasks(headland.laps, last, len(tasks) + 1, inward=request.laps_first))
     if not tasks:
         msg = f"a field of {ground.area / 1e4:.2f} ha has no room for a working width of {request.width:g} m"
         raise PlanError(msg)

@@ -31,6 +31,7 @@ class Room:
         self.polygon = polygon
         self.boundary = polygon.boundary
         self._outline = _outline(body)
+        self.half_width = float(np.abs(self._outline[:, 1]).max())
         self.reach = float(np.hypot(self._outline[:, 0], self._outline[:, 1]).max())
         shapely.prepare(self.ground)
         shapely.prepare(self.polygon)

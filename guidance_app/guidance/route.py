@@ -7,8 +7,9 @@ to-and-fro of every farmer wherever the field is regular.
 
 import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -18,12 +19,10 @@ from guidance_app.guidance.request import PlanRequest
 from guidance_app.guidance.task import Task
 from guidance_app.model import FloatArray, SegmentKind
 
-__all__ = ["Cell", "Run", "route"]
+__all__ = ["Cell", "Run", "Way", "route", "runs_of"]
 
 MOST_EXACT = 5
 """Cells up to which every order is compared; with more the nearest is taken next."""
-
-Order = Callable[[int], PassOrder]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,6 +31,21 @@ class Cell:
 
     pieces: tuple[Piece, ...]
     strips: Strips
+
+
+class Way(Protocol):
+    """A group of passes in a driving order."""
+
+    @property
+    def start(self) -> FloatArray:
+        """Where it begins, (2,): east, north."""
+
+    @property
+    def end(self) -> FloatArray:
+        """Where it ends."""
+
+    def tasks(self, done: int) -> list[Task]:
+        """The passes, numbered from ``done`` + 1."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,9 +84,8 @@ class Run:
         return [Task(SegmentKind.PASS, done + number, self.points(place)) for place, number in enumerate(numbers)]
 
 
-def route(cells: Sequence[Cell], order: Order, request: PlanRequest) -> list[Run]:
-    """Every cell once, from the start towards the exit, with little driving between."""
-    choices = [_runs(cell, order(len(cell.pieces))) for cell in cells]
+def route(choices: Sequence[Sequence[Way]], request: PlanRequest) -> list[Way]:
+    """One way from each group, from the start towards the exit, with little driving between."""
     if not choices:
         return []
     first = _preferred(choices, request)
@@ -81,7 +94,7 @@ def route(cells: Sequence[Cell], order: Order, request: PlanRequest) -> list[Run
     return _nearest_next(choices, first, request)
 
 
-def _runs(cell: Cell, order: PassOrder) -> list[Run]:
+def runs_of(cell: Cell, order: PassOrder) -> list[Run]:
     """The four ways into a cell; two when all passes are driven one way or there is only one pass."""
     sides = (False, True) if len(cell.pieces) > 1 else (False,)
     return [_run(cell, order, from_last, along) for from_last in sides for along in (True, False)]
@@ -102,26 +115,29 @@ def _nearer(before: Piece, here: Piece, along: bool) -> bool:  # noqa: FBT001
     return abs(here.low - at) < abs(here.high - at)
 
 
-def _preferred(choices: Sequence[Sequence[Run]], request: PlanRequest) -> list[tuple[int, int]]:
+def _preferred(choices: Sequence[Sequence[Way]], request: PlanRequest) -> list[tuple[int, int]]:
     """The runs with which the work may begin, as (cell, way); every one when any corner will do."""
     everything = [(cell, way) for cell, ways in enumerate(choices) for way in range(len(ways))]
     if request.start_corner == "nearest":
         return everything
     from_last = request.start_corner.startswith("last")
     along = request.start_corner.endswith("right")
-    cell = -1 if from_last else 0
-    row = (max if from_last else min)(range(len(choices)), key=lambda place: choices[place][0].cell.pieces[cell].row)
+    runs = [[run for run in ways if isinstance(run, Run)] for ways in choices]
+    cells = [cell for cell, ways in enumerate(runs) if ways]
+    if not cells:
+        return everything
+    edge = (max if from_last else min)(cells, key=lambda cell: runs[cell][0].cell.pieces[-1 if from_last else 0].row)
     wanted = [
-        (row, way)
-        for way, run in enumerate(choices[row])
+        (edge, way)
+        for way, run in enumerate(runs[edge])
         if (run.from_last == from_last or len(run.sequence) == 1) and run.along[0] == along
     ]
     return wanted or everything
 
 
-def _best_of_all(choices: Sequence[Sequence[Run]], first: Sequence[tuple[int, int]], request: PlanRequest) -> list[Run]:
+def _best_of_all(choices: Sequence[Sequence[Way]], first: Sequence[tuple[int, int]], request: PlanRequest) -> list[Way]:
     """The order with the least distance between runs, over all orders (dynamic programming over sets of cells)."""
-    states: dict[tuple[int, int, int], tuple[float, tuple[Run, ...]]] = {}
+    states: dict[tuple[int, int, int], tuple[float, tuple[Way, ...]]] = {}
     for cell, way in first:
         run = choices[cell][way]
         states[1 << cell, cell, way] = (_apart(request.start, run.start), (run,))
@@ -131,9 +147,9 @@ def _best_of_all(choices: Sequence[Sequence[Run]], first: Sequence[tuple[int, in
 
 
 def _extended(
-    states: dict[tuple[int, int, int], tuple[float, tuple[Run, ...]]], choices: Sequence[Sequence[Run]]
-) -> dict[tuple[int, int, int], tuple[float, tuple[Run, ...]]]:
-    longer: dict[tuple[int, int, int], tuple[float, tuple[Run, ...]]] = {}
+    states: dict[tuple[int, int, int], tuple[float, tuple[Way, ...]]], choices: Sequence[Sequence[Way]]
+) -> dict[tuple[int, int, int], tuple[float, tuple[Way, ...]]]:
+    longer: dict[tuple[int, int, int], tuple[float, tuple[Way, ...]]] = {}
     for (seen, _, _), (cost, runs) in states.items():
         for cell, ways in enumerate(choices):
             if seen >> cell & 1:
@@ -147,8 +163,8 @@ def _extended(
 
 
 def _nearest_next(
-    choices: Sequence[Sequence[Run]], first: Sequence[tuple[int, int]], request: PlanRequest
-) -> list[Run]:
+    choices: Sequence[Sequence[Way]], first: Sequence[tuple[int, int]], request: PlanRequest
+) -> list[Way]:
     cell, way = min(first, key=lambda each: _apart(request.start, choices[each[0]][each[1]].start))
     runs = [choices[cell][way]]
     left = set(range(len(choices))) - {cell}

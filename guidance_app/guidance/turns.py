@@ -35,13 +35,19 @@ RADIUS_MARGIN = 1.002
 """Turns are laid on a circle wider by this, so that their chords do not bend more than the turning radius."""
 
 TRIES = 8
-"""Candidates of one kind that are checked for a turn, shortest first."""
+"""Candidates of which the missing metres are measured where none fits, shortest first."""
+
+AT_ONCE, MOST_TRIED = 48, 480
+"""Candidates checked at a time, and in all, when any of many ends will do."""
 
 MOST_AT_ONCE = 16
 """Candidates of one pair that are checked at a time at most."""
 
-BACKING = (0.5, 1.0, 1.75)
+BACKING = (0.5, 1.0, 1.75, 3.0)
 """Turning radii by which a tractor backs up along a pass when nothing shorter fits."""
+
+FARTHEST_BACK = 4.0
+"""Turning radii that a driver backs up in the middle of a turn."""
 
 SMALLEST_MISSING = 0.01
 """Metres; a turn that does not fit misses at least this."""
@@ -106,13 +112,13 @@ class Turner:
     def onto(self, start: FloatArray, ends: FloatArray) -> Manoeuvres:
         """Candidates from a worked pass's end to each of many poses (M, 3) on the way."""
         many = np.tile(start, (len(ends), 1))
-        words = join(_ahead(many, self.out), ends, self.radius, reverse=self.reverse)
+        words = self._join(_ahead(many, self.out), ends)
         return self._framed(words, 0.0, 0.0, into=0.0)
 
     def off(self, starts: FloatArray, end: FloatArray) -> Manoeuvres:
         """Candidates from each of many poses (M, 3) on the way to the start of a pass."""
         many = np.tile(end, (len(starts), 1))
-        words = join(starts, _ahead(many, -self.into), self.radius, reverse=self.reverse)
+        words = self._join(starts, _ahead(many, -self.into))
         rows = len(words.start)
         return with_straights(words, np.zeros((rows, 1)), np.full((rows, 1), self.into))
 
@@ -121,13 +127,15 @@ class Turner:
         moves = self._plain(np.tile(start, (len(ends), 1)), ends)
         words = len(moves.start) // len(ends)
         total = moves.total + np.repeat(beyond, words)
-        order = np.argsort(total)[: TRIES * words]
-        order = order[np.isfinite(total[order])]
-        fits = self.room.fits(moves.take(order))
-        if not fits.any():
-            return None
-        row = int(order[np.argmax(fits)])
-        return row // words, turn_along(moves.take(np.array([row])))
+        order = np.argsort(total)
+        order = order[np.isfinite(total[order])][:MOST_TRIED]
+        for low in range(0, len(order), AT_ONCE):
+            rows = order[low : low + AT_ONCE]
+            fits = self.room.fits(moves.take(rows))
+            if fits.any():
+                row = int(rows[np.argmax(fits)])
+                return row // words, turn_along(moves.take(np.array([row])))
+        return None
 
     def missing(self, start: FloatArray, end: FloatArray) -> float:
         """Metres by which the machine sticks out at least, on the best of all manoeuvres from pose to pose."""
@@ -138,8 +146,14 @@ class Turner:
         return max(SMALLEST_MISSING, float(worst.min(initial=self.radius)))
 
     def _plain(self, starts: FloatArray, ends: FloatArray) -> Manoeuvres:
-        words = join(_ahead(starts, self.out), _ahead(ends, -self.into), self.radius, reverse=self.reverse)
+        words = self._join(_ahead(starts, self.out), _ahead(ends, -self.into))
         return self._framed(words, 0.0, 0.0)
+
+    def _join(self, starts: FloatArray, ends: FloatArray) -> Manoeuvres:
+        """Words without those that back up farther than a driver would."""
+        words = join(starts, ends, self.radius, reverse=self.reverse)
+        words.lengths[(words.lengths < -FARTHEST_BACK * self.radius).any(axis=1)] = np.nan
+        return words
 
     def _backing(self, starts: FloatArray, ends: FloatArray) -> Manoeuvres:
         """Backing up before the manoeuvre, or to the next pass's start after it, or both."""
@@ -149,7 +163,7 @@ class Turner:
             if first or last:
                 begin = _ahead(starts, self.out - first)
                 end = _ahead(ends, last if last else -self.into)
-                ways.append(self._framed(join(begin, end, self.radius, reverse=True), first, last))
+                ways.append(self._framed(self._join(begin, end), first, last))
         return stacked(ways, len(starts))
 
     def _backward(self, starts: FloatArray, ends: FloatArray) -> Manoeuvres:

@@ -1,8 +1,9 @@
 """Transfers: from one place of the field to another along the headland, on the lines that the laps use.
 
 A transfer leaves its pass, joins a lap's line in either direction, follows it, and leaves it for the next pass. The
-straight way over the mainland is taken only where it is much shorter, since it runs over the crop. Where nothing fits,
-the transfer is drawn along the boundary, inside, and flagged.
+straight way over the mainland is taken only where it is much shorter, since it runs over the crop. Where no lap leads
+there, a taut string does: through the gap that a lap is too wide for. Where nothing fits, the transfer is drawn as the
+shortest path inside and flagged.
 """
 
 from collections.abc import Sequence
@@ -11,9 +12,11 @@ import numpy as np
 import shapely
 from shapely import MultiLineString, Polygon
 
-from guidance_app.guidance.detour import Detour
+from guidance_app.guidance.blunting import eased_stroke
+from guidance_app.guidance.corridor import Corridor
+from guidance_app.guidance.headland import free_ground, parts_of
 from guidance_app.guidance.manoeuvres import IntArray, Manoeuvres
-from guidance_app.guidance.ring import Ring
+from guidance_app.guidance.ring import Ring, Stroke
 from guidance_app.guidance.room import BoolArray
 from guidance_app.guidance.turns import Leg, Turn, Turner, leg_of, turn_along
 from guidance_app.model import FloatArray
@@ -29,6 +32,12 @@ REACH = 8.0
 CROP = 1.0
 """A metre over the mainland counts as much more than a metre on the headland."""
 
+EASE = 1.025
+"""Turning radii of the circles round which a taut string bends."""
+
+MARGIN = 0.25
+"""Metres from the boundary at which a way that does not fit is drawn."""
+
 BATCH = 12
 """Ways of joining and of leaving that are checked at a time, those that promise most first."""
 
@@ -41,9 +50,9 @@ class Ways:
 
     def __init__(self, turner: Turner, rings: Sequence[FloatArray], mainland: Sequence[Polygon]) -> None:
         self._turner = turner
-        self._tracks = _Tracks(turner, rings)
+        self._tracks = _Tracks(turner, [Ring(points) for ring in rings for points in (ring, ring[::-1])])
         self._mainland = shapely.multipolygons(list(mainland)) if mainland else None
-        self._detour = Detour(turner.room.polygon)
+        self._corridors: tuple[list[Corridor], Corridor] | None = None
         if self._mainland is not None:
             shapely.prepare(self._mainland)
 
@@ -54,8 +63,13 @@ class Ways:
         cost = np.inf if direct is None else self._cost(direct)
         if direct is not None and cost <= direct.length + 2 * self._turner.radius:
             return direct
-        along = self._along_laps(start, end, cost)
-        return along or direct or self._turner.awkward(*pair)[0] or self._flagged(start, end)
+        return (
+            self._along(self._tracks, start, end, cost)
+            or direct
+            or self._pulled(start, end)
+            or self._turner.awkward(*pair)[0]
+            or self._flagged(start, end)
+        )
 
     def _cost(self, turn: Turn) -> float:
         if self._mainland is None:
@@ -63,19 +77,42 @@ class Ways:
         lines = MultiLineString([leg.points for leg in turn.legs])
         return turn.length + CROP * float(shapely.length(shapely.intersection(lines, self._mainland)))
 
+    def _pulled(self, start: FloatArray, end: FloatArray) -> Turn | None:
+        """A way along a taut string that bends on circles only."""
+        for corridor in self._prepared()[0]:
+            string = corridor.path(start[:2], end[:2])
+            if string is not None and len(string) > 1:
+                stroke = Stroke(eased_stroke(string, self._turner.radius))
+                turn = self._along(_Tracks(self._turner, [stroke]), start, end, np.inf)
+                if turn is not None:
+                    return turn
+        return None
+
     def _flagged(self, start: FloatArray, end: FloatArray) -> Turn:
-        leg = leg_of(self._detour.path(start[:2], end[:2]), reverse=False)
+        string = self._prepared()[1].path(start[:2], end[:2])
+        assert string is not None, "the field is in one piece"
+        leg = leg_of(string, reverse=False)
         return Turn((leg,), leg.length, self._turner.missing(start, end))
 
-    def _along_laps(self, start: FloatArray, end: FloatArray, limit: float) -> Turn | None:
-        """The shortest way on a lap's line that fits and costs less than ``limit``."""
+    def _prepared(self) -> tuple[list[Corridor], Corridor]:
+        """Corridors that the machine can follow, and the whole ground; made when first needed."""
+        if self._corridors is None:
+            ground, radius = self._turner.room.polygon, self._turner.radius
+            free = free_ground(ground, self._turner.room.half_width, EASE * radius)
+            inner = parts_of(ground.buffer(-MARGIN))
+            whole = inner[0] if len(inner) == 1 else ground
+            self._corridors = ([Corridor(part) for part in parts_of(free)], Corridor(whole))
+        return self._corridors
+
+    def _along(self, tracks: "_Tracks", start: FloatArray, end: FloatArray, limit: float) -> Turn | None:
+        """The shortest way on one of these lines that fits and costs less than ``limit``."""
         reach = REACH * self._turner.radius
-        joins, leaves = self._tracks.near(start, reach), self._tracks.near(end, reach)
+        joins, leaves = tracks.near(start, reach), tracks.near(end, reach)
         if not len(joins) or not len(leaves):
             return None
-        onto = _Side(self._turner, self._turner.onto(start, self._tracks.poses[joins]), len(joins))
-        off = _Side(self._turner, self._turner.off(self._tracks.poses[leaves], end), len(leaves))
-        between = self._tracks.between(joins, leaves)
+        onto = _Side(self._turner, self._turner.onto(start, tracks.poses[joins]), len(joins))
+        off = _Side(self._turner, self._turner.off(tracks.poses[leaves], end), len(leaves))
+        between = tracks.between(joins, leaves)
         for _ in range(ROUNDS):
             onto.check(between + off.promised[None, :], limit)
             off.check(between.T + onto.promised[None, :], limit)
@@ -85,7 +122,7 @@ class Ways:
             if min(promised, float(sums[row, column])) >= limit:
                 return None
             if sums[row, column] <= promised + 1e-9:
-                ridden = self._tracks.stretch(int(joins[row]), int(leaves[column]))
+                ridden = tracks.stretch(int(joins[row]), int(leaves[column]))
                 return _chained(onto.turn(int(row)), ridden, off.turn(int(column)))
         return None
 
@@ -132,18 +169,18 @@ class _Side:
 
 
 class _Tracks:
-    """All laps' lines in both directions as one table of poses (M, 3)."""
+    """Lines to follow, each in one direction, as one table of poses (M, 3)."""
 
-    def __init__(self, turner: Turner, rings: Sequence[FloatArray]) -> None:
-        self._rings = [Ring(points) for ring in rings for points in (ring, ring[::-1])]
-        along = [np.arange(0.0, ring.length, TRACK_STEP) for ring in self._rings]
+    def __init__(self, turner: Turner, lines: Sequence[Ring | Stroke]) -> None:
+        self._rings = lines
+        along = [ring.places(TRACK_STEP) for ring in self._rings]
         self._along = np.concatenate([*along, np.zeros(0)])
         self._track = np.repeat(np.arange(len(along)), [len(each) for each in along])
         poses = [ring.poses(each) for ring, each in zip(self._rings, along, strict=True)]
         self.poses: FloatArray = np.concatenate([*poses, np.zeros((0, 3))])
         self._free = turner.room.fits_each(self.poses)
         self._blocked = np.concatenate([[0], np.cumsum(~self._free)])
-        self._length = np.array([ring.length for ring in self._rings])
+        self._period = np.array([ring.period for ring in self._rings])
 
     def near(self, pose: FloatArray, reach: float) -> IntArray:
         """Rows of poses within reach at which the machine fits."""
@@ -153,7 +190,7 @@ class _Tracks:
     def between(self, joins: IntArray, leaves: IntArray) -> FloatArray:
         """Metres along the line (J, L) from each row to each; infinite on another line or where the way is blocked."""
         track = self._track[joins][:, None]
-        metres = np.mod(self._along[leaves][None] - self._along[joins][:, None], self._length[track])
+        metres = np.mod(self._along[leaves][None] - self._along[joins][:, None], self._period[track])
         same = track == self._track[leaves][None]
         return np.where(same & ~self._blocked_between(joins, leaves), metres, np.inf)
 

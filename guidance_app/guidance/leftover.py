@@ -1,0 +1,170 @@
+"""What laps and passes leave unworked is worked by passes of its own: tongues, strips beside obstacles, narrow fields.
+
+Each leftover gets strips along its longer side. A strip is worked as far as the whole machine stays inside: in a dead
+end it stops where the front reaches the boundary, and is driven out of backward.
+"""
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from shapely import Polygon
+
+from guidance_app.angles import heading_between
+from guidance_app.guidance.cells import Strips
+from guidance_app.guidance.headland import parts_of
+from guidance_app.guidance.request import PlanRequest
+from guidance_app.guidance.room import Room
+from guidance_app.guidance.task import Task
+from guidance_app.model import FloatArray, SegmentKind
+
+__all__ = ["Leftover", "LeftoverRun", "leftovers", "runs_of"]
+
+SLIVER = 0.12
+"""Working widths; what is narrower than twice this is not worth a pass."""
+
+SMALLEST = 0.5
+"""Square working widths; a smaller leftover is not worth the way there, nor one worked by driving less than a radius."""
+
+NEGLIGIBLE = 2e-4
+"""Part of the field below which a leftover is left, however large."""
+
+WORTH = 0.3
+"""Part of a swath that has to be unworked for a pass."""
+
+STEP = 0.5
+"""Metres between the places at which the machine is tried."""
+
+SHORTEST = 0.8
+"""Turning radii; a shorter pass is not worth driving."""
+
+SHIFTS = (0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45)
+"""Working widths by which a strip is shifted sideways to find room."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Leftover:
+    """Strips side by side; each the line (2, 2) to work when it is driven along the heading, and against it."""
+
+    lines: tuple[tuple[FloatArray, FloatArray], ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LeftoverRun:
+    """A leftover's strips in driving order, as lines (2, 2) in driving direction."""
+
+    lines: tuple[FloatArray, ...]
+    from_last: bool
+
+    @property
+    def start(self) -> FloatArray:
+        """Where it begins, (2,): east, north."""
+        return self.lines[0][0]
+
+    @property
+    def end(self) -> FloatArray:
+        """Where it ends."""
+        return self.lines[-1][1]
+
+    def tasks(self, done: int) -> list[Task]:
+        """The passes, numbered from ``done`` + 1 across the leftover."""
+        return [Task(SegmentKind.PASS, done + place + 1, line) for place, line in enumerate(self.lines)]
+
+
+def leftovers(ground: Polygon, worked: shapely.Geometry, room: Room, request: PlanRequest) -> list[Leftover]:
+    """Strips for every leftover that is worth working and has room for the machine."""
+    sliver = SLIVER * request.width
+    rest = ground.difference(worked).buffer(-sliver, join_style="mitre").buffer(sliver, join_style="mitre")
+    smallest = max(request.width * max(SMALLEST * request.width, request.radius), NEGLIGIBLE * ground.area)
+    found = (_strips(part, room, request) for part in parts_of(rest, smallest))
+    return [each for each in found if each.lines]
+
+
+def runs_of(leftover: Leftover) -> list[LeftoverRun]:
+    """The four ways to work a leftover, strip after strip, each from its nearer end."""
+    ways = itertools.product((False, True) if len(leftover.lines) > 1 else (False,), (0, 1))
+    return [_run(leftover, from_last, way) for from_last, way in ways]
+
+
+def _run(leftover: Leftover, from_last: bool, way: int) -> LeftoverRun:  # noqa: FBT001
+    strips = leftover.lines[::-1] if from_last else leftover.lines
+    lines = [strips[0][way]]
+    for strip in strips[1:]:
+        lines.append(min(strip, key=lambda line: math.dist(line[0], lines[-1][1])))
+    return LeftoverRun(tuple(lines), from_last)
+
+
+def _strips(part: Polygon, room: Room, request: PlanRequest) -> Leftover:
+    strips = Strips(_long_heading(part), 0.0, request.spacing, 0)
+    turned = shapely.transform(part, strips.along_across)
+    _, low, _, high = turned.bounds
+    count = max(1, math.ceil((high - low) / request.spacing - SLIVER))
+    inner = max(0.0, high - low - request.width)
+    middles = [(low + high) / 2 + inner * (place / (count - 1) - 0.5 if count > 1 else 0.0) for place in range(count)]
+    axes = tuple(strips.east_north(np.eye(2)))
+    lines = []
+    for middle in middles:
+        for reach in _reaches(turned, middle, request.width):
+            line = _both_ways(middle, reach, axes, room, request)
+            if line is not None:
+                lines.append(line)
+    return Leftover(tuple(lines))
+
+
+def _reaches(turned: Polygon, middle: float, width: float) -> list[tuple[float, float]]:
+    """From where to where a strip crosses a leftover, wherever enough of it is unworked."""
+    left, _, right, _ = turned.bounds
+    band = shapely.clip_by_rect(turned, left - 1.0, middle - width / 2, right + 1.0, middle + width / 2)
+    pieces = [(part.bounds, part.area) for part in parts_of(band, SLIVER)]
+    return [(low, high) for (low, _, high, _), area in pieces if area > WORTH * width * (high - low)]
+
+
+def _long_heading(part: Polygon) -> float:
+    """Heading of the longer side of the smallest rectangle around."""
+    corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(part))
+    sides = np.diff(corners[:3], axis=0)
+    east, north = sides[int(np.argmax(np.hypot(sides[:, 0], sides[:, 1])))]
+    return heading_between((0.0, 0.0), (float(east), float(north)))
+
+
+def _both_ways(
+    middle: float, reach: tuple[float, float], axes: tuple[FloatArray, FloatArray], room: Room, request: PlanRequest
+) -> tuple[FloatArray, FloatArray] | None:
+    """The line to work along and against the heading, shifted sideways to where it is longest."""
+    best: tuple[FloatArray, FloatArray] | None = None
+    for shift in SHIFTS:
+        off = (middle + shift * request.width) * axes[1]
+        there = _line(off, reach, axes[0], room, request)
+        back = _line(off, (-reach[1], -reach[0]), -axes[0], room, request)
+        if there is None or back is None:
+            continue
+        if best is None or _length(there) > 1.2 * _length(best[0]):
+            best = (there, back)
+        if _length(best[0]) > 0.8 * (reach[1] - reach[0]):
+            break
+    return best
+
+
+def _line(
+    off: FloatArray, reach: tuple[float, float], along: FloatArray, room: Room, request: PlanRequest
+) -> FloatArray | None:
+    """The longest stretch that can be worked in one direction, from where the machine fits to where it still does."""
+    ahead = max(request.offset_back, 0.0)
+    places = np.arange(reach[0], reach[1] + ahead + STEP, STEP)
+    yaw = math.atan2(along[1], along[0])
+    points = off + places[:, None] * along
+    fits = room.fits_each(np.column_stack([points, np.full(len(places), yaw)]))
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], fits, [False]]).astype(int)))
+    runs = [(places[first], places[last - 1]) for first, last in edges.reshape(-1, 2)]
+    begin, end = max(runs, key=lambda run: run[1] - run[0], default=(0.0, 0.0))
+    end = min(end - ahead, reach[1])
+    if end - begin < SHORTEST * request.radius:
+        return None
+    return off + np.array([[begin], [end]]) * along
+
+
+def _length(line: FloatArray) -> float:
+    return math.dist(line[0], line[1])
