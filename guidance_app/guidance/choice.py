@@ -58,7 +58,7 @@ class Choice:
         self.spacing = spacing
         self.held = False
         self.engaged = False
-        self._engaged_against = False
+        self._engaged_against: bool | None = None
         self._was_working = False
         self._better: int | None = None
         self._better_since = (0.0, 0.0, 0.0)
@@ -67,9 +67,10 @@ class Choice:
         """An independent copy."""
         return copy.copy(self)
 
-    def take(self) -> None:
-        """The driver has chosen: nothing else until the tractor has been there."""
-        self.held, self.engaged, self._better = True, False, None
+    def begin(self, *, held: bool) -> None:
+        """On to another target; when it is held (the driver has chosen it), to no other until the tractor was there."""
+        self.held, self.engaged = held, False
+        self._engaged_against = self._better = None
 
     def step(self, seen: Seen, reading: Reading, progress: Progress, side: int) -> int:
         """The key to guide along now. ``side`` as in ``Itinerary.following``."""
@@ -81,7 +82,6 @@ class Choice:
             self._better = None
             return key
         if _is_done(reading.line, progress) and not self.held and (self.engaged or self._has_left(reading)):
-            self.engaged = False
             following = self.itinerary.following(key, progress.done, side or _turned_to(reading))
             return key if following is None else following
         if lowered and not reading.on_pass:
@@ -104,7 +104,8 @@ class Choice:
         """The done target: at its end, turned away, or turned round on the spot."""
         target = reading.line.target
         at_end = not target.closed and not target.endless and reading.to_end <= AT_END
-        return at_end or reading.off_axis > LEFT or reading.against != self._engaged_against
+        turned_round = self._engaged_against is not None and reading.against != self._engaged_against
+        return at_end or turned_round or reading.off_axis > LEFT
 
     def _on_the_way(self, seen: Seen, key: int) -> bool:
         way = self.itinerary.way_to(key)
@@ -114,7 +115,6 @@ class Choice:
         distance, nearest = self._nearest_along(seen, reading.line.key, frozenset())
         if nearest is None or distance > COME * self.spacing or not self._clearly_nearer(distance, reading):
             return reading.line.key
-        self.held, self._better = False, None
         return nearest
 
     def _clearly_nearer(self, distance: float, reading: Reading) -> bool:
@@ -133,7 +133,6 @@ class Choice:
         seconds, metres = SETTLED_AGAINST_PLAN if self._against_order(nearest, key, progress) else SETTLED
         if seen.t - since < seconds or math.hypot(seen.east - east, seen.north - north) < metres:
             return key
-        self._better = None
         return nearest
 
     def _against_order(self, nearest: int, key: int, progress: Progress) -> bool:

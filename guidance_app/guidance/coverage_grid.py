@@ -158,7 +158,7 @@ class CoverageGrid:
 
     def cells(self, east: float, north: float) -> tuple[float, float]:
         """Column and row of a position; only after ``lay``."""
-        assert self._axes is not None  # noqa: S101 - Coverage lays the grid with the first edge
+        assert self._axes is not None
         return self._axes.cells(east, north)
 
     @property
@@ -209,7 +209,7 @@ class CoverageGrid:
 
     def _what_lies(self, x: int, y: int) -> Bits:
         """Where field and mainland are not known, all is inside."""
-        assert self._axes is not None  # noqa: S101 - Coverage lays the grid with the first edge
+        assert self._axes is not None
         ground = EVERYWHERE.copy()
         for plane, edges in ((FIELD, self._axes.field), (MAINLAND, self._axes.mainland)):
             if edges is not None:

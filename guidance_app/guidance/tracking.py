@@ -182,7 +182,7 @@ class Tracker:
         key = self._itinerary.start(seen.east, seen.north, self._progress.done)
         return None if key is None else self._go_to(key)
 
-    def _go_to(self, key: int) -> GuideLine:
+    def _go_to(self, key: int, *, held: bool = False) -> GuideLine:
         line = self._itinerary.line(key)
         if line is None:
             msg = f"an itinerary offered pass {key}, which it does not have"
@@ -196,6 +196,7 @@ class Tracker:
         self._on = self._reached = False
         self._foot = self._work_from = None
         self._travel.begin(planned=self._itinerary.planned_direction)
+        self._choice.begin(held=held)
         return line
 
     def _learn(self, seen: Seen) -> None:
@@ -214,8 +215,7 @@ class Tracker:
         if not keys:
             return False
         open_keys = [key for key in keys if key not in self._progress.done] or list(keys)
-        self._go_to(min(open_keys, key=self._away))
-        self._choice.take()
+        self._go_to(min(open_keys, key=self._away), held=True)
         return True
 
     def _away(self, key: int) -> float:
@@ -228,8 +228,7 @@ class Tracker:
         following = None if self._line is None else self._following(self._line.key)
         if following is None:
             return False
-        self._go_to(following)
-        self._choice.take()
+        self._go_to(following, held=True)
         return True
 
     def reverse(self) -> bool:
