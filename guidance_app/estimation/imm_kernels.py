@@ -39,6 +39,10 @@ from guidance_app.model import FloatArray
 
 MODELS = 3
 
+TEMPER = 1 / 3
+"""The weights' power in the covariance that is shown. Successive roundings err alike, so the weights are surer of a
+model than they may be: untempered, the 95 % ellipse held 84 % on a fishtail and a spiral; so it holds 92 to 100 %."""
+
 SHARPEST = 1.0
 """What a driver may do between two fixes, in m/s2, beyond what the models foresee: no fix is an outlier for that."""
 
@@ -183,16 +187,18 @@ def imm_step(belief: Belief, n: int, dt: float, z: FloatArray, how: int, motion:
 
 @numba.njit(cache=True)
 def combined(belief: Belief, n: int) -> tuple[FloatArray, FloatArray]:
-    """Mean (9,) and covariance (9, 9) of the three models together."""
+    """Mean (9,) and covariance (9, 9) of the three models together; the covariance with tempered weights."""
     x, p, w = belief
     mean = np.zeros(STATES)
     covariance = np.zeros((STATES, STATES))
     for j in range(MODELS):
         for a in range(n):
             mean[a] += w[j] * x[j, a]
+    doubt = w**TEMPER
+    doubt /= doubt.sum()
     for j in range(MODELS):
         for a in range(n):
             for b in range(n):
                 away = (x[j, a] - mean[a]) * (x[j, b] - mean[b])
-                covariance[a, b] += w[j] * (p[j, a, b] + away)
+                covariance[a, b] += doubt[j] * (p[j, a, b] + away)
     return mean, covariance
