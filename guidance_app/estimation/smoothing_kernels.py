@@ -37,11 +37,16 @@ from guidance_app.estimation.observation_kernels import (
 from guidance_app.model import FloatArray
 
 ROBUST = 9.0
+ROUNDING = 1e-12
+"""A smoothed variance below this share of the predicted one is what is left of two equal numbers."""
 DAMPING = 0.7
 OUTLIER = 4.5
 """A fix this many standard deviations outside what all the others say is left out."""
 MOST_OUTLIERS = 2
 """More than so many in a row are no outliers."""
+SHARPEST = 1.5
+FASTEST = 10.0
+"""What a tractor may do between two fixes, in m/s2 and m/s, before one is suspected."""
 LOOSEST = 1e-3
 """The least information, in 1/m2, that a fix keeps."""
 
@@ -172,7 +177,7 @@ def _back_through_epoch(
 
 @numba.njit(cache=True)
 def _less(p: FloatArray, weight: FloatArray, out: FloatArray) -> None:
-    """``out`` becomes P - P weight P, symmetric."""
+    """``out`` becomes P - P weight P, symmetric; P itself where rounding has eaten up the difference."""
     n = p.shape[0]
     across = np.zeros((n, n))
     for i in range(n):
@@ -186,6 +191,10 @@ def _less(p: FloatArray, weight: FloatArray, out: FloatArray) -> None:
                 away += across[i, m] * p[m, j]
             out[i, j] = p[i, j] - away
             out[j, i] = out[i, j]
+    for i in range(n):
+        if out[i, i] <= ROUNDING * p[i, i]:
+            out[:] = p
+            return
 
 
 @numba.njit(cache=True)
@@ -209,23 +218,29 @@ def backward(tape: Tape) -> tuple[FloatArray, FloatArray]:
 
 @numba.njit(cache=True)
 def first_sites(z: FloatArray, t: FloatArray) -> FloatArray:
-    """Each fix as a Gaussian of its cell's and scatter's variance; one far from its neighbours' median is left out."""
+    """Each fix as a Gaussian of its cell's and scatter's variance; one far from its neighbours' median is left out.
+
+    Of five places in a row on any way the median is the middle one's, but for what a turn or a stop does to it in half
+    that time.
+    """
     count = t.size
     sites = np.empty((count, SITE))
     for k in range(count):
         first = max(0, min(k - 2, count - 5))
         last = min(count, first + 5)
+        half = 0.5 * (t[last - 1] - t[first])
         away = 0.0
-        reach = 0.5
         for axis in range(2):
             cell = z[k, CELL_EAST + axis]
             sites[k, SITE_MEAN + axis] = z[k, Z_EAST + axis]
             sites[k, SITE_VARIANCE + axis] = cell * cell / 12.0 + z[k, WHITE] ** 2
             middle = np.median(z[first:last, Z_EAST + axis])
-            away += (z[k, Z_EAST + axis] - middle) ** 2
-            extent = z[first:last, Z_EAST + axis].max() - z[first:last, Z_EAST + axis].min()
-            reach += 1.5 * cell + min(0.5 * extent, 4.0 * (t[last - 1] - t[first]) / 2.0)
-        if math.sqrt(away) > reach:
+            reach = 0.5 + 1.5 * cell + 4.0 * z[k, WHITE] + 0.5 * SHARPEST * half * half
+            if k - first != 2:  # near the ends it is not the middle one
+                way = 0.5 * abs(z[last - 1, Z_EAST + axis] - z[first, Z_EAST + axis])
+                reach += min(way, FASTEST * half)
+            away = max(away, abs(z[k, Z_EAST + axis] - middle) / reach)
+        if away > 1.0:
             sites[k, SITE_VARIANCE] = 0.0
             sites[k, SITE_VARIANCE + 1] = 0.0
     return sites

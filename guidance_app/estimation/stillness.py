@@ -46,6 +46,10 @@ class Stillness:
             return Stillness(self.east, self.north, self.held_since, slow_since, quick)
         return Stillness(z.east, z.north, z.t, slow_since, quick)
 
+    def repeats(self, z: Measurement) -> bool:
+        """Whether this is the very fix that has been held: nothing new if the tractor stands."""
+        return self.held_since < z.t and (self.east, self.north) == (z.east, z.north)
+
     def speed_bound(self, z: Measurement, white: float) -> float | None:
         """Standard deviation of the speed about zero, in m/s; None while the tractor is not known to stand."""
         if z.speed is not None:

@@ -247,7 +247,7 @@ def _advanced(state: _State, z: Measurement, noise: ReceiverNoise, settings: Ada
     models = _models(settings, z)
     epoch = readings(z, noise, settings, bound)
     motion = (_model_rows(models), _moves(models, round(dt, 4)), common_noise(z, noise, settings))
-    nothing_new = bound is not None and (still.east, still.north) == (z.east, z.north)
+    nothing_new = bound is not None and still.repeats(z)
     if nothing_new:
         belief, _ = imm_step(state.belief, state.n, dt, epoch, WITHOUT_POSITION, motion)
         rejected = state.rejected
