@@ -7,6 +7,7 @@ other program, user or web page of this machine can go round the front.
 
 import hmac
 import secrets
+import warnings
 
 import rich
 import viser
@@ -25,6 +26,8 @@ class InnerViser:
     """A running viser server and what our front needs to reach it."""
 
     def __init__(self, label: str) -> None:
+        # A browser that leaves between two redraws is nothing to tell the terminal; viser warns of it each time.
+        warnings.filterwarnings("ignore", message="Queued a .* on a closed connection", category=UserWarning)
         rich.get_console().quiet = True  # viser prints an address that nobody can use; nothing else here uses rich
         self._secret = secrets.token_urlsafe(32)
         self.server = viser.ViserServer(host=LOOPBACK, port=0, label=label, verbose=False)
