@@ -1,7 +1,7 @@
 """Whether a long day stays cheap: bytes on the wire for each fix and memory, hour by hour, and who joins at the end.
 
 The engine works a simulated day as fast as it can and the console's own screen draws it for a client that reads every
-byte. A redraw comes after each fifty fixes and is waited for, so that nothing piles up. Words in the panels change by
+byte. A redraw comes after each hundred fixes and is waited for, so that nothing piles up. Words in the panels change by
 the true clock, so in a hurried hour they come more rarely than in a drive: two stretches are therefore driven in true
 time, one after ten minutes and one at the end.
 
@@ -11,6 +11,7 @@ Memory is that of the whole process: engine, console and the clients that measur
 import argparse
 import contextlib
 import gc
+import math
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -30,7 +31,7 @@ from guidance_app.view.bar import bar_json, bar_of
 
 __all__ = ["Growth", "Hour", "Joining", "Stretch", "add_parser", "measured", "rows_of", "run"]
 
-FIXES_A_REDRAW = 50
+FIXES_A_REDRAW = 100
 MINUTE = 60.0
 HOUR = 3600.0
 EARLY = 10 * MINUTE
@@ -158,7 +159,7 @@ def _hours(text: str) -> float:
 def measured(hours: float, seconds: float) -> Growth:
     """Works a day of so many hours and measures it, with two stretches of ``seconds`` in true time."""
     memory_in_use()  # a system that does not tell it is found out before the day, not after
-    day = day_of_work(hours=hours)
+    day = day_of_work(hours=hours + (2 * seconds + MINUTE) / HOUR)
     session = DrivenSession(day.job)
     with contextlib.ExitStack() as opened:
         inner = InnerViser(label="Guidance")
@@ -175,10 +176,8 @@ def measured(hours: float, seconds: float) -> Growth:
         worker.hurry_to(EARLY - MINUTE)
         early = worker.hurry_to(EARLY)
         first_stretch = worker.in_true_time(seconds)
-        full_hours = [float(number) for number in range(1, int(hours) + 1)]
-        ends = [one * HOUR for one in full_hours or [hours]]
-        ends[-1] -= seconds + 1.0  # the last stretch and the joining client are of the same day
-        measured_hours = tuple(worker.hurry_to(end) for end in ends)
+        ends = [*range(1, math.ceil(hours)), hours]
+        measured_hours = tuple(worker.hurry_to(end * HOUR) for end in ends)
         last_stretch = worker.in_true_time(seconds)
         return Growth(early, measured_hours, first_stretch, last_stretch, worker.join(inner))
 
