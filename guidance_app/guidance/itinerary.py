@@ -43,6 +43,11 @@ class Path:
         """Whether the position is on this way, within so many metres."""
         return self.polyline.foot(east, north).distance <= within
 
+    def leads_along(self, east: float, north: float, heading: float, within: float) -> bool:
+        """Whether the position is on this way and the heading along it."""
+        foot = self.polyline.foot(east, north)
+        return foot.distance <= within and abs(wrap_pi(heading - foot.direction)) <= ALONG
+
 
 class Itinerary(Protocol):
     """What the tracker needs to know of a plan or a family."""
@@ -170,6 +175,9 @@ class FamilyItinerary:
         """All passes of a family run along its guidance line."""
         return 1.0
 
+
+ALONG = math.radians(45)
+"""A tractor that points within this of a way follows it."""
 
 POINTS_A_PIECE = 32
 """The search tree holds pieces of passes of at most so many points."""

@@ -148,7 +148,15 @@ class Tracker:
         foot = self._find_foot(line, seen, moved)
         self._foot = foot
         against = self._travel.step(seen, foot, COME * self._spacing)
-        return self._reader.read(line, foot, seen, against=against, was_on=self._on)
+        reading = self._reader.read(line, foot, seen, against=against, was_on=self._on)
+        return reading._replace(on_pass=False) if self._comes_along(reading, seen) else reading
+
+    def _comes_along(self, reading: Reading, seen: Seen) -> bool:
+        """Whether the planned way to the target's entry runs back along the target, and the tractor on it."""
+        if self._reached or not reading.on_pass or not reading.against:
+            return False
+        way = self._itinerary.way_to(reading.line.key)
+        return way is not None and way.leads_along(seen.east, seen.north, seen.heading, COME * self._spacing)
 
     def _find_foot(self, line: GuideLine, seen: Seen, moved: float) -> Foot:
         if self._foot is None:

@@ -140,6 +140,22 @@ def test_the_implement_behind_is_on_the_pass_until_it_has_come_to_the_end() -> N
     assert on_it[-1] == pytest.approx(63.0, abs=2.0 * INTERVAL)
 
 
+def test_on_the_planned_way_back_along_the_target_the_target_is_not_worked() -> None:
+    first, second = np.array([[0.0, 0.0], [0.0, 60.0]]), np.array([[SPACING, 0.0], [SPACING, 60.0]])
+    way = np.array([[0.0, 60.0], [2.0, 64.0], [SPACING, 60.0], [SPACING, 0.0], [3.0, -3.0], [SPACING, 0.0]])
+    segments = [
+        a_segment(SegmentKind.PASS, 1, first),
+        a_segment(SegmentKind.TURN, 2, way),
+        a_segment(SegmentKind.PASS, 2, second),
+    ]
+    tracker = Tracker(a_plan(segments, SPACING), SPACING)
+    drive(tracker, list(poses_along(first)), working=True)
+    coming = drive(tracker, list(poses_along(way, start=50.0)), working=False)
+    assert coming[-1].target.number == 2
+    assert not any(one.on_pass for one in coming)
+    assert any(one.on_pass for one in drive(tracker, list(poses_along(second, start=150.0)), working=False))
+
+
 # --- laps -------------------------------------------------------------------------------------------------------------
 
 
