@@ -8,9 +8,9 @@ import copy
 from dataclasses import replace
 from typing import Any
 
-from guidance_app.documents import Job
+from guidance_app.documents import HitchKind, Job
 from guidance_app.engine.ground import Ground, ground_beside, ground_of, mainland_of, shown_beside
-from guidance_app.estimation.reference_point import carried
+from guidance_app.estimation.reference_point import carried, offset_point
 from guidance_app.geodesy import FieldFrame
 from guidance_app.guidance.coverage import Coverage
 from guidance_app.guidance.straight import StraightStretch
@@ -56,7 +56,7 @@ class WorkDone:
         self._guided: tuple[Pose, tuple[float, float]] | None = None
         plan = None if self._ground is None else self._ground.plan
         if plan is not None:
-            self._tracker = Tracker(plan, plan.spacing)
+            self._tracker = Tracker(plan, plan.spacing, behind=self._behind)
         self._coverage = Coverage(
             job.implement.working_width,
             field=None if self._ground is None else self._ground.polygon,
@@ -88,7 +88,7 @@ class WorkDone:
         """One pose further: along which pass, is the implement down, what has it worked."""
         if self._tracker is None:
             self._look_for_a_line(pose)
-        guided = implement[:2] if self._job.settings.guide_implement else (pose.east, pose.north)
+        guided = self._guided_point(pose, implement)
         self._guided = pose, guided
         if self._tracker is not None:
             self._guidance = self._tracker.step(pose, guided, self._switch.down)
@@ -97,6 +97,22 @@ class WorkDone:
         number = None if self._guidance is None else self._guidance.target.number
         self._coverage.step(implement, pose.t, self._switch.down, number)
         self._track.step(pose.t, pose.east, pose.north, pose.heading)
+
+    @property
+    def _behind(self) -> float:
+        """How far the work lies behind the guided point: a pass is driven on until the implement is at its end."""
+        implement = self._job.implement
+        if self._job.settings.guide_implement:
+            return 0.0
+        if implement.hitch is HitchKind.TRAILED:
+            return implement.hitch_back + implement.drawbar
+        return implement.offset_back
+
+    def _guided_point(self, pose: Pose, implement: tuple[float, float, float]) -> tuple[float, float]:
+        """The implement's working point, or the point of the rear axle's line that runs ahead of it on the pass."""
+        if self._job.settings.guide_implement:
+            return implement[:2]
+        return offset_point(pose.east, pose.north, pose.heading, 0.0, self._job.implement.offset_right)
 
     def command(self, command: Command, arrival: float) -> None:
         """The driver's wish. Without a line, wishes about lines have nothing to act on and change nothing."""
@@ -176,7 +192,8 @@ class WorkDone:
         self._version += 1
         if self._ground.family is not None:
             field = self._ground.polygon
-            self._tracker = Tracker(self._ground.family, self._job.implement.spacing, field=field)
+            spacing = self._job.implement.spacing
+            self._tracker = Tracker(self._ground.family, spacing, field=field, behind=self._behind)
 
     def _show_around_target(self) -> None:
         """Without a field the shown lines follow the tractor."""
