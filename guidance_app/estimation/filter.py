@@ -162,7 +162,7 @@ POSITION = _Tuned(
 """Position alone, tuned over eight scenarios at once: a tuning on straight lines is 1.3 to 2.2 m off on arcs."""
 DOPPLER = _Tuned((0.0110, 0.00176, 0.00391, 0.0150, 0.178, 0.1006, 54.6, 1.126, 0.0090, 0.327, 0.0073, 0.0126))
 """Position with the receiver's course and speed."""
-GYRO = _Tuned((0.00132, 0.0253, 0.0212, 0.00197, 0.935, 0.0378, 54.6, 2.276, 0.0252, 0.0897, 0.0023, 0.0511))
+GYRO = _Tuned((0.01008, 0.02836, 0.01341, 0.0001, 0.3079, 0.006453, 35.4, 4.757, 0.0162, 0.1013, 0.004891, 0.03288))
 """Position with a gyro."""
 DOPPLER_GYRO = _Tuned(
     (0.01029, 0.00955, 0.01024, 0.1063, 0.1575, 0.002309, 19.14, 485.3, 0.003231, 0.2624, 0.01331, 0.02118)
