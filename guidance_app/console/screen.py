@@ -46,6 +46,7 @@ class _Client:
         self.wished_view: ViewMode | None = None
         self.wished_back = False
         self.panels_due = 0.0
+        self.failed = False
         panels_of(self)
 
     def take_wishes(self) -> None:
@@ -136,10 +137,21 @@ class Screen:
         for client in list(self._clients.values()):
             try:
                 self._draw(client, snapshot, now)
+                client.failed = False
             except Exception:
-                if client.handle.client_id in self._server.get_clients():
-                    log.exception("client %d could not be drawn and is left out", client.handle.client_id)
-                self._clients.pop(client.handle.client_id, None)
+                self._after_failure(client)
+
+    def _after_failure(self, client: _Client) -> None:
+        """A client that has gone is forgotten; one that is still there is drawn again at the next redraw.
+
+        viser's queue is not safe against two threads at every moment: now and then a redraw fails that way, once.
+        """
+        number = client.handle.client_id
+        if number not in self._server.get_clients():
+            self._clients.pop(number, None)
+        elif not client.failed:
+            log.exception("client %d could not be drawn; the next redraw tries again", number)
+        client.failed = True
 
     def _draw(self, client: _Client, snapshot: Snapshot, now: float) -> None:
         client.take_wishes()
