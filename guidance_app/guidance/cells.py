@@ -17,11 +17,14 @@ from guidance_app.angles import east_north
 from guidance_app.guidance.request import LastPass
 from guidance_app.model import FloatArray
 
-__all__ = ["Piece", "Strips", "cells_of", "cut", "strips_over"]
+__all__ = ["Piece", "Strips", "cells_of", "cut", "cut_inside", "strips_over"]
 
 ROUNDING = 1e-6
 SLIVER = 0.02
 """Square metres of mainland in a strip that are not worth a pass."""
+
+SHORTEST = 0.5
+"""Metres; a shorter piece of a strip's middle is not worth a pass."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,16 +84,29 @@ def strips_over(
     return Strips(heading, low + spacing / 2, spacing, count)
 
 
-def cut(mainland: Sequence[Polygon], strips: Strips, join: float) -> tuple[Piece, ...]:
-    """The pieces of all strips, by row, then along. Gaps up to ``join`` metres within a strip are driven through."""
-    pieces: list[Piece] = []
+def cut(mainland: Sequence[Polygon], strips: Strips) -> tuple[Piece, ...]:
+    """The pieces of all strips, by row, then along; each as long as the strip touches the mainland."""
     turned = [shapely.transform(part, strips.along_across) for part in mainland]
+    half = strips.spacing / 2
+    pieces: list[Piece] = []
     for row in range(strips.count):
         middle = strips.middle(row)
-        spans: list[tuple[float, float]] = []
-        for part in turned:
-            spans.extend(_spans(part, middle - strips.spacing / 2, middle + strips.spacing / 2))
-        pieces.extend(Piece(row, low, high) for low, high in _joined(spans, join))
+        spans = [span for part in turned for span in _spans(part, middle - half, middle + half)]
+        pieces.extend(Piece(row, low, high) for low, high in _joined(spans))
+    return tuple(pieces)
+
+
+def cut_inside(mainland: Sequence[Polygon], strips: Strips) -> tuple[Piece, ...]:
+    """The pieces no longer than the strips' middles lie in the mainland: less is worked twice, wedges are missed."""
+    turned = [shapely.transform(part, strips.along_across) for part in mainland]
+    left, _, right, _ = shapely.total_bounds(turned)
+    middles = [strips.middle(row) for row in range(strips.count)]
+    lines = [shapely.LineString([(left - 1, middle), (right + 1, middle)]) for middle in middles]
+    pieces: list[Piece] = []
+    for row, line in enumerate(lines):
+        inner = [shapely.intersection(part, line) for part in turned]
+        bounds = [part.bounds for geometry in inner for part in shapely.get_parts(geometry) if part.length > SHORTEST]
+        pieces.extend(Piece(row, low, high) for low, high in _joined([(west, east) for west, _, east, _ in bounds]))
     return tuple(pieces)
 
 
@@ -105,10 +121,11 @@ def _spans(part: Polygon, bottom: float, top: float) -> list[tuple[float, float]
     return [(float(west), float(east)) for west, _, east, _ in bounds]
 
 
-def _joined(spans: list[tuple[float, float]], join: float) -> list[tuple[float, float]]:
+def _joined(spans: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Spans that overlap as one."""
     joined: list[tuple[float, float]] = []
     for low, high in sorted(spans):
-        if joined and low <= joined[-1][1] + join:
+        if joined and low <= joined[-1][1]:
             joined[-1] = (joined[-1][0], max(joined[-1][1], high))
         else:
             joined.append((low, high))

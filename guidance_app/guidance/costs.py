@@ -3,67 +3,55 @@
 import math
 from collections.abc import Sequence
 
-import numpy as np
 import shapely
 from shapely import Polygon
 
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.model import PlanCosts, Segment, SegmentKind
 
-__all__ = ["costs_of", "worked_ground"]
-
-GRID = 1e-4
-"""Metres to which strips are snapped before they are joined: without it GEOS loses ground between adjacent strips."""
+__all__ = ["costs_of", "joins_of"]
 
 
-def costs_of(segments: Sequence[Segment], ground: Polygon, request: PlanRequest) -> PlanCosts:
-    """The sums over the segments, and areas from the union of what is worked."""
+def costs_of(
+    segments: Sequence[Segment], ground: Polygon, worked: shapely.Geometry, swaths_area: float, request: PlanRequest
+) -> PlanCosts:
+    """Sums over the segments, and areas; ``worked`` is the union of the swaths, ``swaths_area`` the sum of theirs.
+
+    A turn is tight when the machine backs up in it, or its ends are nearer to each other than the turning circle.
+    """
     work = sum(each.length for each in segments if each.implement_down)
     idle = sum(each.length for each in segments if not each.implement_down)
     stops = 2 * sum(each.reverse for each in segments)
-    joins = _joins(segments)
-    swaths = worked_ground(segments, request.width)
-    united = shapely.union_all(swaths, grid_size=GRID) if len(swaths) else Polygon()
-    inside = united.intersection(ground).area
-    twice = float(shapely.area(swaths).sum()) - united.area
+    joins = joins_of(segments)
+    inside = worked.intersection(ground).area
     seconds = work / request.work_speed + idle / request.turn_speed + stops * request.stop_s
     return PlanCosts(
         work_m=work,
         idle_m=idle,
         turns=len(joins),
-        tight_turns=sum(any(each.reverse for each in join) for join in joins),
+        tight_turns=sum(_tight(join, request.path_radius) for join in joins),
         minutes=seconds / 60,
-        worked_fraction=inside / ground.area,
-        overlap_fraction=twice / united.area if united.area else 0.0,
+        worked_fraction=min(1.0, inside / ground.area),
+        overlap_fraction=max(0.0, swaths_area - worked.area) / worked.area if worked.area else 0.0,
         missed_m2=max(0.0, ground.area - inside),
     )
 
 
-def worked_ground(segments: Sequence[Segment], width: float) -> np.ndarray:
-    """One polygon for each worked segment."""
-    return np.array(
-        [
-            shapely.buffer(_line(each), width / 2, cap_style="flat", quad_segs=8)
-            for each in segments
-            if each.implement_down
-        ]
-    )
-
-
-def _line(segment: Segment) -> shapely.Geometry:
-    return shapely.linearrings(segment.points) if segment.closed else shapely.linestrings(segment.points)
-
-
-def _joins(segments: Sequence[Segment]) -> list[list[Segment]]:
-    """Runs of segments that are not worked, each between two worked ones."""
+def joins_of(segments: Sequence[Segment]) -> list[list[Segment]]:
+    """Turns and transfers, each as its segments in driving order."""
     joins: list[list[Segment]] = []
-    before_worked = True
+    joining = False
     for each in segments:
         if each.kind not in (SegmentKind.TURN, SegmentKind.TRANSFER):
-            before_worked = True
-        elif before_worked:
-            joins.append([each])
-            before_worked = False
-        else:
+            joining = False
+        elif joining:
             joins[-1].append(each)
+        else:
+            joins.append([each])
+            joining = True
     return joins
+
+
+def _tight(join: Sequence[Segment], radius: float) -> bool:
+    apart = math.dist(join[0].points[0], join[-1].points[-1])
+    return any(each.reverse for each in join) or apart < 2 * radius

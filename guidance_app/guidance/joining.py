@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from guidance_app.guidance.lap import Lap
-from guidance_app.guidance.task import Task
+from guidance_app.guidance.task import Task, side_tasks
 from guidance_app.guidance.turns import Turn, Turner
 from guidance_app.guidance.ways import Ways
 from guidance_app.model import FloatArray, Segment, SegmentKind
@@ -51,21 +51,17 @@ class Joiner:
                 last = tasks[-1].last
         return tasks
 
-    def sides(self, lap: Lap) -> list[Task]:
-        """The sides of a lap, begun anywhere."""
-        return _sides(lap, 0.0, 0, None)
-
     def lap_tasks(self, lap: Lap, last: FloatArray | None, number: int) -> list[Task]:
         """The sides of a lap, begun where it is reached soonest from the pose ``last``."""
         poses, along = lap.poses(LAP_STEP)
         if last is None:
-            return _sides(lap, 0.0, number, None)
+            return side_tasks(lap, 0.0, number, None)
         order = np.argsort(np.hypot(*(poses[:, :2] - last[:2]).T))[:LAP_PLACES]
         found = self._turner.nearest(last, poses[order], np.zeros(len(order)))
         if found is not None:
-            return _sides(lap, float(along[order[found[0]]]), number, found[1])
+            return side_tasks(lap, float(along[order[found[0]]]), number, found[1])
         nearest = int(order[0])
-        return _sides(lap, float(along[nearest]), number, self._ways.way(last, poses[nearest]))
+        return side_tasks(lap, float(along[nearest]), number, self._ways.way(last, poses[nearest]))
 
     def _turns(self, tasks: Sequence[Task]) -> list[Turn]:
         pairs = list(zip(tasks, tasks[1:], strict=False))
@@ -92,14 +88,6 @@ def _apart(lap: Lap, last: FloatArray | None) -> float:
     return float(np.hypot(*(lap.points - last[:2]).T).min())
 
 
-def _sides(lap: Lap, begin: float, number: int, approach: Turn | None) -> list[Task]:
-    sides = lap.sides_from(begin)
-    return [
-        Task(SegmentKind.LAP, number + place, side.points, side.closed, approach if place == 0 else side.approach)
-        for place, side in enumerate(sides)
-    ]
-
-
 def _worked(task: Task) -> Segment:
     line = shapely.linearrings(task.points) if task.closed else shapely.linestrings(task.points)
     return Segment(task.kind, task.number, task.points, True, float(shapely.length(line)), closed=task.closed)
@@ -108,7 +96,7 @@ def _worked(task: Task) -> Segment:
 def _joining(turn: Turn, number: int) -> Iterator[Segment]:
     for leg in turn.legs:
         yield Segment(
-            SegmentKind.TURN,
+            SegmentKind.TRANSFER if turn.transfer else SegmentKind.TURN,
             number,
             leg.points,
             implement_down=False,

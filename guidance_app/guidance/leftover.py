@@ -15,11 +15,12 @@ from shapely import Polygon
 
 from guidance_app.angles import heading_between
 from guidance_app.guidance.cells import Strips
-from guidance_app.guidance.headland import parts_of
+from guidance_app.guidance.clearance import parts_of
+from guidance_app.guidance.pattern import PassOrder
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.guidance.room import Room
 from guidance_app.guidance.task import Task
-from guidance_app.model import FloatArray, SegmentKind
+from guidance_app.model import FloatArray
 
 __all__ = ["Leftover", "LeftoverRun", "leftovers", "runs_of"]
 
@@ -54,10 +55,10 @@ class Leftover:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LeftoverRun:
-    """A leftover's strips in driving order, as lines (2, 2) in driving direction."""
+    """A leftover's strips in driving order, as lines (2, 2) in driving direction, and each one's place across."""
 
     lines: tuple[FloatArray, ...]
-    from_last: bool
+    places: tuple[int, ...]
 
     @property
     def start(self) -> FloatArray:
@@ -71,34 +72,37 @@ class LeftoverRun:
 
     def tasks(self, done: int) -> list[Task]:
         """The passes, numbered from ``done`` + 1 across the leftover."""
-        return [Task(SegmentKind.PASS, done + place + 1, line) for place, line in enumerate(self.lines)]
+        return [Task.along(line, done + place + 1) for place, line in zip(self.places, self.lines, strict=True)]
 
 
-def leftovers(ground: Polygon, worked: shapely.Geometry, room: Room, request: PlanRequest) -> list[Leftover]:
-    """Strips for every leftover that is worth working and has room for the machine."""
+def leftovers(
+    ground: Polygon, worked: shapely.Geometry, room: Room, request: PlanRequest, heading: float | None = None
+) -> list[Leftover]:
+    """Strips for every leftover that is worth working and has room for the machine, along ``heading`` if given."""
     sliver = SLIVER * request.width
     rest = ground.difference(worked).buffer(-sliver, join_style="mitre").buffer(sliver, join_style="mitre")
     smallest = max(request.width * max(SMALLEST * request.width, request.radius), NEGLIGIBLE * ground.area)
-    found = (_strips(part, room, request) for part in parts_of(rest, smallest))
+    found = (_strips(part, room, request, heading) for part in parts_of(rest, smallest))
     return [each for each in found if each.lines]
 
 
-def runs_of(leftover: Leftover) -> list[LeftoverRun]:
-    """The four ways to work a leftover, strip after strip, each from its nearer end."""
+def runs_of(leftover: Leftover, order: PassOrder) -> list[LeftoverRun]:
+    """The four ways to work a leftover in the method's order, each strip from its nearer end."""
     ways = itertools.product((False, True) if len(leftover.lines) > 1 else (False,), (0, 1))
-    return [_run(leftover, from_last, way) for from_last, way in ways]
+    return [_run(leftover, order, from_last, way) for from_last, way in ways]
 
 
-def _run(leftover: Leftover, from_last: bool, way: int) -> LeftoverRun:  # noqa: FBT001
+def _run(leftover: Leftover, order: PassOrder, from_last: bool, way: int) -> LeftoverRun:  # noqa: FBT001
     strips = leftover.lines[::-1] if from_last else leftover.lines
-    lines = [strips[0][way]]
-    for strip in strips[1:]:
-        lines.append(min(strip, key=lambda line: math.dist(line[0], lines[-1][1])))
-    return LeftoverRun(tuple(lines), from_last)
+    lines = [strips[order.sequence[0]][way]]
+    for place in order.sequence[1:]:
+        both = strips[place]
+        lines.append(both[way] if order.one_way else min(both, key=lambda line: math.dist(line[0], lines[-1][1])))
+    return LeftoverRun(tuple(lines), order.sequence)
 
 
-def _strips(part: Polygon, room: Room, request: PlanRequest) -> Leftover:
-    strips = Strips(_long_heading(part), 0.0, request.spacing, 0)
+def _strips(part: Polygon, room: Room, request: PlanRequest, heading: float | None) -> Leftover:
+    strips = Strips(_long_heading(part) if heading is None else heading, 0.0, request.spacing, 0)
     turned = shapely.transform(part, strips.along_across)
     _, low, _, high = turned.bounds
     count = max(1, math.ceil((high - low) / request.spacing - SLIVER))

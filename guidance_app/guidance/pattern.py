@@ -26,9 +26,9 @@ class PassOrder:
 
 @dataclass(frozen=True, slots=True)
 class OperationMethod:
-    """One way to work a whole field. ``laps_only`` works it in laps, ``outward`` from the middle to the edge.
+    """One way to work a whole field. ``order`` takes the number of passes and the options' document.
 
-    ``order`` takes the number of passes and the options' document.
+    ``inward`` is there for a method that works the field in laps: whether they begin at the boundary.
     """
 
     name: str
@@ -36,7 +36,7 @@ class OperationMethod:
     explanation: str
     options: type[PatternOptions]
     order: Callable[[int, PatternOptions], PassOrder]
-    laps_only: bool = False
+    inward: Callable[[PatternOptions], bool] | None = None
 
     def options_from(self, given: Mapping[str, float | int | str | bool]) -> PatternOptions:
         """The options' document with its bounds checked. Raises ``PlanError`` naming the option."""
@@ -47,6 +47,11 @@ class OperationMethod:
             place = ".".join(str(part) for part in first["loc"]) or "options"
             msg = f"method {self.name}, option {place}: {first['msg']}"
             raise PlanError(msg) from error
+
+    def laps_inward(self, options: PatternOptions) -> bool:
+        """Whether laps begin at the boundary; only of a method that works in laps."""
+        assert self.inward is not None, f"{self.name} does not work in laps"
+        return self.inward(options)
 
     def pass_order(self, count: int, options: PatternOptions) -> PassOrder:
         """The order for ``count`` passes; a broken permutation is a defect of the method."""

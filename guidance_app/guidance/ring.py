@@ -35,6 +35,10 @@ class Stroke:
         """Metres from end to end."""
         return float(self._along[-1])
 
+    def reversed(self) -> "Stroke":
+        """The line driven the other way."""
+        return Stroke(self.points[::-1])
+
     @property
     def period(self) -> float:
         """Metres after which the line comes round again: never."""
@@ -77,6 +81,10 @@ class Ring:
     def length(self) -> float:
         """Metres once round."""
         return float(self._along[-1])
+
+    def reversed(self) -> "Ring":
+        """The line driven the other way."""
+        return Ring(self.points[::-1])
 
     @property
     def period(self) -> float:

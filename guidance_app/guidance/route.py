@@ -11,13 +11,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-
 from guidance_app.guidance.cells import Piece, Strips
 from guidance_app.guidance.pattern import PassOrder
 from guidance_app.guidance.request import PlanRequest
-from guidance_app.guidance.task import Task
-from guidance_app.model import FloatArray, SegmentKind
+from guidance_app.guidance.task import Task, pass_line
+from guidance_app.model import FloatArray
 
 __all__ = ["Cell", "Run", "Way", "route", "runs_of"]
 
@@ -25,12 +23,19 @@ MOST_EXACT = 5
 """Cells up to which every order is compared; with more the nearest is taken next."""
 
 
+FIRSTS = 6
+"""First runs from which a route is built when there are too many cells to compare all orders."""
+
+_Place = tuple[float, float] | None
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Cell:
-    """Neighbouring pieces, by row, and the frame of their strips."""
+    """Neighbouring pieces, by row, and the frame of their strips; ``numbers`` where they have them already."""
 
     pieces: tuple[Piece, ...]
     strips: Strips
+    numbers: tuple[int, ...] | None = None
 
 
 class Way(Protocol):
@@ -72,26 +77,27 @@ class Run:
 
     def points(self, place: int) -> FloatArray:
         """The line of one pass in driving order, (2, 2)."""
-        piece = self.cell.pieces[self.sequence[place]]
-        across = self.cell.strips.middle(piece.row)
-        ends = np.array([(piece.low, across), (piece.high, across)])
-        return self.cell.strips.east_north(ends if self.along[place] else ends[::-1])
+        line = pass_line(self.cell.pieces[self.sequence[place]], self.cell.strips)
+        return line if self.along[place] else line[::-1]
 
     def tasks(self, done: int) -> list[Task]:
         """The passes, numbered from ``done`` + 1 across the cell from the side at which it is entered."""
         count = len(self.sequence)
-        numbers = [count - place if self.from_last else place + 1 for place in self.sequence]
-        return [Task(SegmentKind.PASS, done + number, self.points(place)) for place, number in enumerate(numbers)]
+        if self.cell.numbers is not None:
+            numbers = [self.cell.numbers[place] for place in self.sequence]
+        else:
+            numbers = [done + (count - place if self.from_last else place + 1) for place in self.sequence]
+        return [Task.along(self.points(place), number) for place, number in enumerate(numbers)]
 
 
-def route(choices: Sequence[Sequence[Way]], request: PlanRequest) -> list[Way]:
-    """One way from each group, from the start towards the exit, with little driving between."""
+def route(choices: Sequence[Sequence[Way]], request: PlanRequest, start: tuple[float, float] | None) -> list[Way]:
+    """One way from each group, from ``start`` towards the request's exit, with little driving between."""
     if not choices:
         return []
     first = _preferred(choices, request)
     if len(choices) <= MOST_EXACT:
-        return _best_of_all(choices, first, request)
-    return _nearest_next(choices, first, request)
+        return _best_of_all(choices, first, (start, request.exit))
+    return _nearest_next(choices, first, (start, request.exit))
 
 
 def runs_of(cell: Cell, order: PassOrder) -> list[Run]:
@@ -135,15 +141,17 @@ def _preferred(choices: Sequence[Sequence[Way]], request: PlanRequest) -> list[t
     return wanted or everything
 
 
-def _best_of_all(choices: Sequence[Sequence[Way]], first: Sequence[tuple[int, int]], request: PlanRequest) -> list[Way]:
+def _best_of_all(
+    choices: Sequence[Sequence[Way]], first: Sequence[tuple[int, int]], ends: tuple[_Place, _Place]
+) -> list[Way]:
     """The order with the least distance between runs, over all orders (dynamic programming over sets of cells)."""
     states: dict[tuple[int, int, int], tuple[float, tuple[Way, ...]]] = {}
     for cell, way in first:
         run = choices[cell][way]
-        states[1 << cell, cell, way] = (_apart(request.start, run.start), (run,))
+        states[1 << cell, cell, way] = (_apart(ends[0], run.start), (run,))
     for _ in range(len(choices) - 1):
         states = _extended(states, choices)
-    return list(min(states.values(), key=lambda state: state[0] + _apart(request.exit, state[1][-1].end))[1])
+    return list(min(states.values(), key=lambda state: state[0] + _apart(ends[1], state[1][-1].end))[1])
 
 
 def _extended(
@@ -163,9 +171,15 @@ def _extended(
 
 
 def _nearest_next(
-    choices: Sequence[Sequence[Way]], first: Sequence[tuple[int, int]], request: PlanRequest
+    choices: Sequence[Sequence[Way]], first: Sequence[tuple[int, int]], ends: tuple[_Place, _Place]
 ) -> list[Way]:
-    cell, way = min(first, key=lambda each: _apart(request.start, choices[each[0]][each[1]].start))
+    """Always the nearest run next, from each of the likeliest first ones; the best of these."""
+    likeliest = sorted(first, key=lambda each: _apart(ends[0], choices[each[0]][each[1]].start))[:FIRSTS]
+    routes = [_nearest_from(choices, cell, way) for cell, way in likeliest]
+    return min(routes, key=lambda route: _empty_way(route, ends))
+
+
+def _nearest_from(choices: Sequence[Sequence[Way]], cell: int, way: int) -> list[Way]:
     runs = [choices[cell][way]]
     left = set(range(len(choices))) - {cell}
     while left:
@@ -176,6 +190,11 @@ def _nearest_next(
         runs.append(run)
         left.remove(cell)
     return runs
+
+
+def _empty_way(runs: Sequence[Way], ends: tuple[_Place, _Place]) -> float:
+    between = sum(_apart(before.end, after.start) for before, after in itertools.pairwise(runs))
+    return _apart(ends[0], runs[0].start) + between + _apart(ends[1], runs[-1].end)
 
 
 def _apart(one: FloatArray | tuple[float, float] | None, other: FloatArray) -> float:

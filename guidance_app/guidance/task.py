@@ -5,10 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from guidance_app.guidance.cells import Piece, Strips
+from guidance_app.guidance.lap import Lap
 from guidance_app.guidance.turns import Turn
 from guidance_app.model import FloatArray, SegmentKind
 
-__all__ = ["Task", "pose_at"]
+__all__ = ["Task", "pass_line", "pose_at", "side_tasks"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,6 +23,11 @@ class Task:
     closed: bool = False
     approach: Turn | None = None
 
+    @classmethod
+    def along(cls, line: FloatArray, number: int = 0) -> "Task":
+        """A pass along a line (2, 2)."""
+        return cls(SegmentKind.PASS, number, line)
+
     @property
     def first(self) -> FloatArray:
         """Pose (3,) at its start: east, north, yaw."""
@@ -32,6 +39,20 @@ class Task:
         if self.closed:
             return pose_at(self.points[0], self.points[0] - self.points[-1])
         return pose_at(self.points[-1], self.points[-1] - self.points[-2])
+
+
+def pass_line(piece: Piece, strips: Strips) -> FloatArray:
+    """A pass as a line (2, 2) along its strips' heading."""
+    across = strips.middle(piece.row)
+    return strips.east_north(np.array([(piece.low, across), (piece.high, across)]))
+
+
+def side_tasks(lap: Lap, begin: float, number: int, approach: Turn | None) -> list[Task]:
+    """The sides of a lap begun at ``begin`` metres along its line, numbered from ``number``."""
+    return [
+        Task(SegmentKind.LAP, number + place, side.points, side.closed, approach if place == 0 else side.approach)
+        for place, side in enumerate(lap.sides_from(begin))
+    ]
 
 
 def pose_at(point: FloatArray, direction: FloatArray) -> FloatArray:

@@ -49,6 +49,9 @@ BACKING = (0.5, 1.0, 1.75, 3.0)
 FARTHEST_BACK = 4.0
 """Turning radii that a driver backs up in the middle of a turn."""
 
+MOST_BENT_BACK = 1.6
+"""Radians that a driver steers through when he backs all the way."""
+
 SMALLEST_MISSING = 0.01
 """Metres; a turn that does not fit misses at least this."""
 
@@ -64,11 +67,12 @@ class Leg:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Turn:
-    """A way from pose to pose. ``missing`` is 0 when it fits."""
+    """A way from pose to pose. ``missing`` is 0 when it fits; ``transfer`` if it follows something on its way."""
 
     legs: tuple[Leg, ...]
     length: float
     missing: float = 0.0
+    transfer: bool = False
 
     @property
     def fits(self) -> bool:
@@ -168,6 +172,8 @@ class Turner:
 
     def _backward(self, starts: FloatArray, ends: FloatArray) -> Manoeuvres:
         words = backed(_ahead(starts, self.out), ends, self.radius)
+        bent = np.abs(words.lengths * words.turns).sum(axis=1)
+        words.lengths[bent > MOST_BENT_BACK * self.radius] = np.nan
         return self._framed(words, 0.0, 0.0, into=0.0)
 
     def _framed(self, words: Manoeuvres, first: float, last: float, into: float | None = None) -> Manoeuvres:

@@ -14,7 +14,7 @@ from shapely import MultiLineString, Polygon
 
 from guidance_app.guidance.blunting import eased_stroke
 from guidance_app.guidance.corridor import Corridor
-from guidance_app.guidance.headland import free_ground, parts_of
+from guidance_app.guidance.clearance import free_ground, parts_of
 from guidance_app.guidance.manoeuvres import IntArray, Manoeuvres
 from guidance_app.guidance.ring import Ring, Stroke
 from guidance_app.guidance.room import BoolArray
@@ -48,9 +48,9 @@ ROUNDS = 25
 class Ways:
     """Finds the way between any two poses of one field."""
 
-    def __init__(self, turner: Turner, rings: Sequence[FloatArray], mainland: Sequence[Polygon]) -> None:
+    def __init__(self, turner: Turner, lines: Sequence[Ring | Stroke], mainland: Sequence[Polygon]) -> None:
         self._turner = turner
-        self._tracks = _Tracks(turner, [Ring(points) for ring in rings for points in (ring, ring[::-1])])
+        self._tracks = _Tracks(turner, [way for line in lines for way in (line, line.reversed())])
         self._mainland = shapely.multipolygons(list(mainland)) if mainland else None
         self._corridors: tuple[list[Corridor], Corridor] | None = None
         if self._mainland is not None:
@@ -92,7 +92,7 @@ class Ways:
         string = self._prepared()[1].path(start[:2], end[:2])
         assert string is not None, "the field is in one piece"
         leg = leg_of(string, reverse=False)
-        return Turn((leg,), leg.length, self._turner.missing(start, end))
+        return Turn((leg,), leg.length, self._turner.missing(start, end), transfer=True)
 
     def _prepared(self) -> tuple[list[Corridor], Corridor]:
         """Corridors that the machine can follow, and the whole ground; made when first needed."""
@@ -220,4 +220,4 @@ def _chained(onto: Turn, ridden: FloatArray, off: Turn) -> Turn:
             legs[-1] = leg_of(np.vstack([legs[-1].points, leg.points[1:]]), leg.reverse)
         else:
             legs.append(leg)
-    return Turn(tuple(legs), sum(leg.length for leg in legs))
+    return Turn(tuple(legs), sum(leg.length for leg in legs), transfer=True)

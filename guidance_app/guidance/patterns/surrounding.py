@@ -16,8 +16,12 @@ class SurroundingOptions(PatternOptions):
 
 def _order(count: int, options: PatternOptions) -> PassOrder:
     assert isinstance(options, SurroundingOptions)
-    sequence = neighbours(count)
-    return PassOrder(sequence[::-1] if options.inside_out else sequence)
+    return PassOrder(neighbours(count))
+
+
+def _inward(options: PatternOptions) -> bool:
+    assert isinstance(options, SurroundingOptions)
+    return not options.inside_out
 
 
 METHOD = OperationMethod(
@@ -26,5 +30,5 @@ METHOD = OperationMethod(
     explanation="Laps along the boundary from the edge inward, or from the middle outward.",
     options=SurroundingOptions,
     order=_order,
-    laps_only=True,
+    inward=_inward,
 )

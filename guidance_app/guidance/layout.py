@@ -1,0 +1,82 @@
+"""Where a field is worked, whatever the order: laps, cells of passes, leftovers, and the ground they work."""
+
+import math
+from dataclasses import dataclass
+
+import shapely
+from shapely import Polygon
+
+from guidance_app.documents import Direction, Method
+from guidance_app.guidance.cells import Piece, Strips, cells_of, cut, cut_inside, strips_over
+from guidance_app.guidance.direction import pass_heading
+from guidance_app.guidance.headland import Headland, headland_of, laps_only
+from guidance_app.guidance.leftover import Leftover, leftovers
+from guidance_app.guidance.request import PlanRequest
+from guidance_app.guidance.room import Room
+from guidance_app.guidance.route import Cell
+from guidance_app.guidance.swaths import swath, united
+from guidance_app.guidance.task import Task, pass_line, side_tasks
+
+__all__ = ["Layout", "layout_of"]
+
+ROUNDS = 3
+"""Times that leftovers are looked for: a bent one is worked by one straight pass after another."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Layout:
+    """All that is worked. ``worked`` is the union of the swaths, ``swaths_area`` the sum of their areas."""
+
+    ground: Polygon
+    headland: Headland
+    heading: float
+    spacing: float
+    cells: tuple[Cell, ...]
+    leftovers: tuple[Leftover, ...]
+    worked: shapely.Geometry
+    swaths_area: float
+
+
+def layout_of(ground: Polygon, room: Room, request: PlanRequest) -> Layout:
+    """Headland, passes over the mainland, and passes for what both leave."""
+    headland = laps_only(ground, request) if request.method is Method.SURROUNDING else headland_of(ground, request)
+    heading = pass_heading(ground, headland.mainland, request)
+    mainland = headland.mainland if headland.laps else ()
+    cells, spacing = _cells(mainland, heading, request)
+    tasks = [task for lap in headland.laps for task in side_tasks(lap, 0.0, 0, None)]
+    tasks.extend(Task.along(pass_line(piece, cell.strips)) for cell in cells for piece in cell.pieces)
+    swaths = [swath(task, request.width) for task in tasks]
+    worked = united(swaths)
+    area = float(shapely.area(swaths).sum()) if swaths else 0.0
+    found: list[Leftover] = []
+    for attempt in range(ROUNDS):
+        preferred = heading if attempt == 0 and not headland.laps else None
+        more = leftovers(ground, worked, room, request, preferred)
+        if not more:
+            break
+        found.extend(more)
+        swaths = [swath(Task.along(line[0]), request.width) for each in more for line in each.lines]
+        area += float(shapely.area(swaths).sum())
+        worked = united([worked, *swaths])
+    return Layout(ground, headland, heading, spacing, cells, tuple(found), worked, area)
+
+
+def _cells(mainland: tuple[Polygon, ...], heading: float, request: PlanRequest) -> tuple[tuple[Cell, ...], float]:
+    if not mainland:
+        return (), request.spacing
+    across = _line_across(heading, request)
+    strips = strips_over(mainland, heading, request.spacing, request.last_pass, across)
+    pieces = _pieces(mainland, strips, request)
+    return tuple(Cell(run, strips) for run in cells_of(pieces)), strips.spacing
+
+
+def _pieces(mainland: tuple[Polygon, ...], strips: Strips, request: PlanRequest) -> tuple[Piece, ...]:
+    return cut(mainland, strips) if request.lengthen else cut_inside(mainland, strips)
+
+
+def _line_across(heading: float, request: PlanRequest) -> float | None:
+    """How far the AB line lies to the right of the origin, seen along the passes; None without one."""
+    if request.direction is not Direction.LINE or request.line is None:
+        return None
+    east, north = request.line[0]
+    return east * math.cos(heading) - north * math.sin(heading)
