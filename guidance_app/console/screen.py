@@ -138,10 +138,10 @@ class Screen:
             try:
                 self._draw(client, snapshot, now)
                 client.failed = False
-            except Exception:
-                self._after_failure(client)
+            except Exception as error:  # noqa: BLE001 - whatever fails for one client, the others are drawn
+                self._after_failure(client, error)
 
-    def _after_failure(self, client: _Client) -> None:
+    def _after_failure(self, client: _Client, error: Exception) -> None:
         """A client that has gone is forgotten; one that is still there is drawn again at the next redraw.
 
         viser's queue is not safe against two threads at every moment: now and then a redraw fails that way, once.
@@ -150,7 +150,7 @@ class Screen:
         if number not in self._server.get_clients():
             self._clients.pop(number, None)
         elif not client.failed:
-            log.exception("client %d could not be drawn; the next redraw tries again", number)
+            log.error("client %d could not be drawn; the next redraw tries again", number, exc_info=error)
         client.failed = True
 
     def _draw(self, client: _Client, snapshot: Snapshot, now: float) -> None:
