@@ -13,7 +13,18 @@ import numpy as np
 from guidance_app.evaluation.tracks import BoolArray, Track
 from guidance_app.model import FloatArray
 
-__all__ = ["Errors", "Score", "errors_of", "geometric_mean", "heading_spread", "pool", "score", "summarise", "wrapped"]
+__all__ = [
+    "Errors",
+    "Score",
+    "after",
+    "errors_of",
+    "geometric_mean",
+    "heading_spread",
+    "pool",
+    "score",
+    "summarise",
+    "wrapped",
+]
 
 ELLIPSE_95 = 5.991
 """Chi-square of two degrees of freedom that 95 % stay below."""
@@ -148,6 +159,11 @@ def summarise(errors: Errors, *, remove_offset: bool = False) -> Score:
         turn_bias=float(np.mean(inside)) if len(inside) else None,
         heading_lag=-float(np.sum(heading * rate)) / swing if swing > 1e-6 else None,
     )
+
+
+def after(track: Track, seconds: float) -> Track:
+    """The track without its first ``seconds``."""
+    return _picked(track, track.t - track.t[0] >= seconds)
 
 
 def heading_spread(error: FloatArray) -> tuple[float, float]:
