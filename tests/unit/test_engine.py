@@ -4,6 +4,7 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from support.drives import FRAME, a_job, path_chunks, up_and_down
 
 from guidance_app.engine import Engine
 from guidance_app.estimation.filters import FILTERS
@@ -22,7 +23,6 @@ from guidance_app.model import (
     TakePass,
     WorkMode,
 )
-from support.drives import FRAME, a_job, path_chunks, up_and_down
 
 CENTIMETRE = 0.01
 DRIVE = path_chunks(up_and_down())

@@ -5,11 +5,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from support.drives import a_job, path_chunks, up_and_down
 
 from guidance_app.model import Chunk, LinkStatus, SetLookAhead, SetWork, Snapshot, SourceDown, SourceUp, TakePass
 from guidance_app.runtime import LiveSession, ReplaySession
 from guidance_app.sources.file import FileLog, load_log
-from support.drives import a_job, path_chunks, up_and_down
 
 PATIENCE = 20.0
 

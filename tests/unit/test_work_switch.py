@@ -52,10 +52,10 @@ def test_the_button_decides_until_another_way_is_chosen() -> None:
 
 def test_the_implements_own_switch_is_believed_and_silence_changes_nothing() -> None:
     switch = WorkSwitch(3.0).with_mode(WorkMode.SWITCH)
-    down = switch.after(POSE, None, True)
+    down = switch.after(POSE, None, reported=True)
     assert down.down
     assert down.after(POSE, None, None).down
-    assert not down.after(POSE, None, False).down
+    assert not down.after(POSE, None, reported=False).down
 
 
 def test_by_speed_there_is_a_gap_between_beginning_and_ending() -> None:
