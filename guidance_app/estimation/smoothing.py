@@ -124,6 +124,7 @@ def _swept(first: Measurement, departure: Departure, epochs: Epochs) -> tuple[Fl
     sites[silent, 2:] = 0.0
     calm = epochs.models
     models = calm
+    sharp = np.zeros(len(epochs.t), dtype=bool)
     for sweep in range(SWEEPS):
         x, p = _first_state(first, departure, epochs)
         tape = forward(x, p, epochs.t, epochs.z, (models, epochs.common), sites)
@@ -131,7 +132,8 @@ def _swept(first: Measurement, departure: Departure, epochs: Epochs) -> tuple[Fl
         if sweep < SWEEPS - 1:
             wrong = move_sites(epochs.z, means, covariances, sites)
             models = _livelier(calm, epochs.t, means)
-            models[wrong > 0.0] = SHARP
+            sharp |= wrong > 0.0
+            models[sharp] = SHARP
             sites[silent, 2:] = 0.0
     return means, covariances
 
@@ -148,8 +150,8 @@ def _livelier(calm: FloatArray, t: FloatArray, means: FloatArray) -> FloatArray:
     faster = (means[after, SPEED] - means[before, SPEED]) ** 2 / span
     sharper = (means[after, CURVATURE] - means[before, CURVATURE]) ** 2 / span
     models = calm.copy()
-    models[:, 0] = np.sqrt(calm[:, 0] ** 2 + GIVE * faster)
-    models[:, 1] = np.sqrt(calm[:, 1] ** 2 + 0.5 * GIVE * calm[:, 2] * sharper)
+    models[:, 0] = np.minimum(np.sqrt(calm[:, 0] ** 2 + GIVE * faster), SHARP[0])
+    models[:, 1] = np.minimum(np.sqrt(calm[:, 1] ** 2 + 0.5 * GIVE * calm[:, 2] * sharper), SHARP[1])
     return models
 
 

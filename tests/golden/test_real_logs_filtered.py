@@ -16,6 +16,7 @@ from guidance_app.evaluation.real import (
     requantised,
     track_from_fixes,
 )
+from guidance_app.evaluation.smoothed import smooth_recording
 from guidance_app.evaluation.tracks import Recording
 
 CM = 100.0
@@ -64,6 +65,16 @@ def test_the_adaptive_filter_stays_on_a_tractors_log(tractor: tuple[Recording, T
     assert np.median(errors.distance) * CM < 30
     assert np.percentile(errors.distance, 95) < 2.5
     assert errors.distance.max() < 20
+
+
+@pytest.mark.parametrize("which", ["car", "tractor"])
+def test_the_smoother_stays_on_real_logs(which: str, request: pytest.FixtureRequest) -> None:
+    recording, truth = request.getfixturevalue(which)
+    errors = errors_of(smooth_recording(recording), truth)
+    assert np.all(np.isfinite(errors.distance))
+    assert np.median(errors.distance) * CM < 40
+    assert np.percentile(errors.distance, 95) < 2.5
+    assert errors.distance.max() < 80
 
 
 @pytest.mark.parametrize("log", [TRACTOR.format(4), "nmea/tractor_9m/impl9m_TLG00008_4dec.nmea"])
