@@ -16,7 +16,7 @@ from guidance_app.estimation.filter import QuantisationSettings
 from guidance_app.estimation.filters import make_filter
 from guidance_app.evaluation.comparisons import Case, recording_of
 from guidance_app.evaluation.gomez_gil import Reading, rounding_only
-from guidance_app.evaluation.objectives import straight_objective
+from guidance_app.evaluation.objectives import Objective, straight_objective
 from guidance_app.evaluation.peers import (
     PeerMissingError,
     filterpy_four_state,
@@ -28,7 +28,7 @@ from guidance_app.evaluation.rows import at_most
 from guidance_app.evaluation.scenarios import straight_line
 from guidance_app.evaluation.smoothed import smooth_recording
 from guidance_app.evaluation.tracks import Recording, measurements
-from guidance_app.evaluation.tuning import chunks_of, cma_search, noise_of, random_search
+from guidance_app.evaluation.tuning import Found, chunks_of, cma_search, noise_of, random_search
 
 __all__ = ["FilterTime", "add_parser", "filter_rows", "filter_times", "run", "tuning_rows"]
 
@@ -37,7 +37,7 @@ FEWER = 400
 """Stone Soup is measured on fewer fixes: it is a hundred times slower."""
 REPEATS = 5
 MICROSECONDS = 1e6
-TRIAL_DRAWS = 100_000
+TRIAL_DRAWS = 200_000
 ALL_DRAWS = 2_000_000
 """As many as Gomez-Gil et al. (2013) drew."""
 GOALS = {"quantisation_kf": 2.0, "adaptive, position only": 20.0, "smoother, position only": 30.0}
@@ -127,9 +127,7 @@ def tuning_rows(processes: int) -> list[EvaluationRow]:
     began = time.perf_counter()
     *_, optimum = cma_search(objective)
     seconds = time.perf_counter() - began
-    began = time.perf_counter()
-    *_, drawn = random_search(objective, chunks_of(TRIAL_DRAWS), processes)
-    drawing = (time.perf_counter() - began) * ALL_DRAWS / TRIAL_DRAWS
+    drawn, drawing = _drawing(objective, processes)
     return [
         EvaluationRow(protocol, "CMA-ES, time to the optimum", "s", seconds, goal=at_most(2.0)),
         EvaluationRow(
@@ -145,6 +143,18 @@ def tuning_rows(processes: int) -> list[EvaluationRow]:
         ),
         EvaluationRow(protocol, f"{TRIAL_DRAWS:,} draws, RMSE", "cm", 100 * drawn.rms, paper=3.74),
     ]
+
+
+def _drawing(objective: Objective, processes: int) -> tuple[Found, float]:
+    """The best of the trial's draws, and how long all draws would take: the start, and the rest at the trial's pace."""
+    began = time.perf_counter()
+    search = random_search(objective, chunks_of(TRIAL_DRAWS), processes)
+    found = first = next(search)
+    started = time.perf_counter()
+    for found in search:
+        """Only the last one counts."""
+    pace = (time.perf_counter() - started) / (found.evaluations - first.evaluations)
+    return found, started - began + pace * (ALL_DRAWS - first.evaluations)
 
 
 def _peer_times(line: Recording, ours: float) -> list[FilterTime]:
