@@ -149,10 +149,9 @@ def _drawing(objective: Objective, processes: int) -> tuple[Found, float]:
     """The best of the trial's draws, and how long all draws would take: the start, and the rest at the trial's pace."""
     began = time.perf_counter()
     search = random_search(objective, chunks_of(TRIAL_DRAWS), processes)
-    found = first = next(search)
+    first = next(search)
     started = time.perf_counter()
-    for found in search:
-        """Only the last one counts."""
+    *_, found = search
     pace = (time.perf_counter() - started) / (found.evaluations - first.evaluations)
     return found, started - began + pace * (ALL_DRAWS - first.evaluations)
 

@@ -7,8 +7,9 @@ is asked for anew from here.
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from guidance_app.estimation.filter import QuantisationSettings
 from guidance_app.evaluation.objectives import Objective
-from guidance_app.evaluation.tuning import Chunk, ChunkBest, Found, best_of_chunk, best_so_far
+from guidance_app.evaluation.tuning import Chunk, ChunkBest, Found, best_of_chunk, best_so_far, noise_of
 
 __all__ = ["ClusterError", "cluster_search"]
 
@@ -38,6 +39,7 @@ def cluster_search(objective: Objective, chunks: Sequence[Chunk], address: str) 
     except (OSError, TimeoutError, ValueError) as error:
         msg = f"no Dask scheduler answers at {address}: {error}"
         raise ClusterError(msg) from error
+    objective = objective.hardest_first(noise_of(QuantisationSettings()))
     with client:
         asked: Any = distributed.as_completed(loop=client.loop, raise_errors=False)  # type: ignore[no-untyped-call]  # no types
         yield from best_so_far(objective, chunks, _arriving(client, asked, objective, chunks))

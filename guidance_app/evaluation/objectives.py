@@ -62,6 +62,11 @@ class Objective:
         """The pieces of these names alone."""
         return self.picked([number for number, name in enumerate(self.names) if name in names])
 
+    def hardest_first(self, noise: FloatArray) -> "Objective":
+        """The same pieces, those with the largest errors first, so that a losing draw is dropped early."""
+        errors = [self.picked([number]).rms(noise) for number in range(len(self.names))]
+        return self.picked(sorted(range(len(errors)), key=lambda number: -errors[number]))
+
     def picked(self, numbers: Sequence[int]) -> "Objective":
         """The pieces of these numbers alone."""
         pieces = [self.table[self.starts[number] : self.starts[number + 1]] for number in numbers]

@@ -112,6 +112,7 @@ def best_of_chunk(objective: Objective, chunk: Chunk) -> ChunkBest:
 
 def random_search(objective: Objective, chunks: Sequence[Chunk], processes: int = 1) -> Iterator[Found]:
     """The best draw so far after each chunk, over so many processes; the order of arrival does not change the end."""
+    objective = objective.hardest_first(noise_of(QuantisationSettings()))
     if processes <= 1:
         yield from best_so_far(objective, chunks, (best_of_chunk(objective, chunk) for chunk in chunks))
         return
