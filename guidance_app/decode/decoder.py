@@ -307,8 +307,8 @@ class Decoder:
         return False
 
     def _fix_of(self, epoch: Epoch, t: float, position: Sentence, quality: FixQuality) -> Fix:
-        assert position.latitude_deg is not None  # noqa: S101 - Epoch.position gives only sentences that have one
-        assert position.longitude_deg is not None  # noqa: S101 - the two come together
+        assert position.latitude_deg is not None
+        assert position.longitude_deg is not None
         speed, course = epoch.motion(position)
         accuracy = epoch.sentences.get("GST")
         whole = orientation_of(epoch.sentences.values(), self._declination)

@@ -155,8 +155,10 @@ def _turns(points: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _tightness(points: FloatArray, radius: float) -> FloatArray:
-    """The bend (N,) of a closed line at each point, in bends of the circle; the first and last of an open one mean
-    nothing."""
+    """The bend (N,) of a closed line at each point, in bends of the circle.
+
+    Of an open line the first and the last mean nothing.
+    """
     turn, steps = _turns(points)
     bend: FloatArray = np.abs(turn) * radius / ((steps + np.roll(steps, 1)) / 2)
     return bend

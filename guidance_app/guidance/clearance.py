@@ -12,6 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 import shapely
 from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from guidance_app.model import FloatArray
 
@@ -36,12 +37,12 @@ NEAR = 1.8
 """Corners nearer to each other than this many times the room between circle and inset are one tip."""
 
 
-def parts_of(geometry: shapely.Geometry, smallest: float = SMALLEST) -> tuple[Polygon, ...]:
+def parts_of(geometry: BaseGeometry, smallest: float = SMALLEST) -> tuple[Polygon, ...]:
     """The polygons in a geometry, without slivers."""
     return tuple(part for part in shapely.get_parts(geometry) if isinstance(part, Polygon) and part.area > smallest)
 
 
-def free_ground(ground: Polygon, inset: float, radius: float) -> shapely.Geometry:
+def free_ground(ground: Polygon, inset: float, radius: float) -> BaseGeometry:
     """What lies ``inset`` inside and can be driven round; ``ground`` is oriented, its outer ring counter-clockwise."""
     free = ground.buffer(-inset, quad_segs=ARC)
     if inset >= radius:
@@ -62,7 +63,7 @@ def obstacles_within(ground: Polygon, ring: shapely.LinearRing, radius: float) -
     return shapely.orient_polygons(wide, exterior_cw=True).exterior
 
 
-def _around(ring: shapely.LinearRing, inset: float, radius: float) -> list[shapely.Geometry]:
+def _around(ring: shapely.LinearRing, inset: float, radius: float) -> list[BaseGeometry]:
     """What an obstacle takes: an oval about its middle line if it is small, else the pieces at its tips."""
     core = _core(ring)
     if shapely.hausdorff_distance(core, ring) + inset <= radius:
@@ -70,7 +71,7 @@ def _around(ring: shapely.LinearRing, inset: float, radius: float) -> list[shape
     return list(_segments(shapely.simplify(ring, BLUNT), inset, radius))
 
 
-def _core(ring: shapely.LinearRing) -> shapely.Geometry:
+def _core(ring: shapely.LinearRing) -> BaseGeometry:
     """The middle line of the smallest rectangle around."""
     corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(ring))
     sides = corners[1:3] - corners[:2]

@@ -61,7 +61,7 @@ class CornerFinder:
 
     def _corner(self, ring: Ring, line: LineString, cut: Polygon) -> Corner | None:
         tips = shapely.get_coordinates(cut.exterior)
-        apart = shapely.distance(line, shapely.points(tips))
+        apart: FloatArray = np.asarray(shapely.distance(line, shapely.points(tips)))
         touching = tips[apart < 2 * ON_THE_LINE]
         deepest = int(np.argmax(apart))
         if apart[deepest] * self._growth < self._worth or len(touching) < 2:

@@ -6,6 +6,7 @@ turning radius, the whole string can be driven.
 """
 
 import heapq
+import itertools
 import math
 from collections.abc import Sequence
 
@@ -27,7 +28,7 @@ class Corridor:
     """Shortest paths in one polygon."""
 
     def __init__(self, ground: Polygon) -> None:
-        triangles = [part for part in shapely.get_parts(shapely.constrained_delaunay_triangles(ground))]
+        triangles = list(shapely.get_parts(shapely.constrained_delaunay_triangles(ground)))
         self._tree = shapely.STRtree(triangles)
         self._corners = [_corners(part) for part in triangles]
         self._middles = [(float(part.centroid.x), float(part.centroid.y)) for part in triangles]
@@ -44,7 +45,7 @@ class Corridor:
         crossed = self._crossed(first, last, _point(start), _point(end))
         if crossed is None:
             return None
-        gates = [self._gate(here, there) for here, there in zip(crossed, crossed[1:], strict=False)]
+        gates = [self._gate(here, there) for here, there in itertools.pairwise(crossed)]
         return np.array(_pulled(_point(start), gates, _point(end)))
 
     def _crossed(self, first: int, last: int, start: _Point, end: _Point) -> list[int] | None:

@@ -3,8 +3,8 @@
 import math
 from collections.abc import Sequence
 
-import shapely
 from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.model import PlanCosts, Segment, SegmentKind
@@ -13,7 +13,7 @@ __all__ = ["costs_of", "joins_of"]
 
 
 def costs_of(
-    segments: Sequence[Segment], ground: Polygon, worked: shapely.Geometry, swaths_area: float, request: PlanRequest
+    segments: Sequence[Segment], ground: Polygon, worked: BaseGeometry, swaths_area: float, request: PlanRequest
 ) -> PlanCosts:
     """Sums over the segments, and areas; ``worked`` is the union of the swaths, ``swaths_area`` the sum of theirs.
 

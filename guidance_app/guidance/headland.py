@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from guidance_app.guidance.blunting import eased
 from guidance_app.guidance.clearance import ARC, free_ground, obstacles_within, parts_of
@@ -121,9 +122,7 @@ def _lap(place: int, points: FloatArray, ground: Polygon, finder: CornerFinder, 
     return Lap(place, nest, ring, finder.corners(ring))
 
 
-def _lines(
-    ground: Polygon, drivable: shapely.Geometry, radius: float, request: PlanRequest
-) -> Iterator[FloatArray | None]:
+def _lines(ground: Polygon, drivable: BaseGeometry, radius: float, request: PlanRequest) -> Iterator[FloatArray | None]:
     """The edges of the drivable ground, bent no tighter than the machine can; the ground lies left of each."""
     for part in parts_of(drivable):
         for number, ring in enumerate((part.exterior, *part.interiors)):

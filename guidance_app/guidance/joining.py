@@ -1,5 +1,6 @@
 """From tasks in driving order to the segments of a plan: what joins one task to the next, and where laps begin."""
 
+import itertools
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -64,7 +65,7 @@ class Joiner:
         return side_tasks(lap, float(along[nearest]), number, self._ways.way(last, poses[nearest]))
 
     def _turns(self, tasks: Sequence[Task]) -> list[Turn]:
-        pairs = list(zip(tasks, tasks[1:], strict=False))
+        pairs = list(itertools.pairwise(tasks))
         known: list[Turn | None] = [after.approach for _, after in pairs]
         near = [
             place
@@ -90,7 +91,9 @@ def _apart(lap: Lap, last: FloatArray | None) -> float:
 
 def _worked(task: Task) -> Segment:
     line = shapely.linearrings(task.points) if task.closed else shapely.linestrings(task.points)
-    return Segment(task.kind, task.number, task.points, True, float(shapely.length(line)), closed=task.closed)
+    return Segment(
+        task.kind, task.number, task.points, implement_down=True, length=float(shapely.length(line)), closed=task.closed
+    )
 
 
 def _joining(turn: Turn, number: int) -> Iterator[Segment]:

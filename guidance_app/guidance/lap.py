@@ -20,8 +20,11 @@ SHORTEST = 0.1
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Corner:
-    """The implement is lifted at ``lift`` and the corner passed at ``end``, metres along the lap (``lift`` may lie
-    before its seam); the next side begins at ``start`` (east, north), behind the corner's end."""
+    """Where a lap's side ends and the next begins.
+
+    The implement is lifted at ``lift`` and the corner passed at ``end``, metres along the lap (``lift`` may lie before
+    its seam); the next side begins at ``start`` (east, north), behind the corner's end.
+    """
 
     lift: float
     end: float
@@ -39,8 +42,11 @@ class Side:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Lap:
-    """One ring to drive. ``place`` counts from the boundary, from 0; ``nest`` says which of the ground's rings is the
-    nearest, 0 for the outer boundary."""
+    """One ring to drive.
+
+    ``place`` counts from the boundary, from 0; ``nest`` says which of the ground's rings is the nearest, 0 for the
+    outer boundary.
+    """
 
     place: int
     nest: int

@@ -5,13 +5,14 @@ from dataclasses import dataclass
 
 import shapely
 from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from guidance_app.documents import Direction, Method
-from guidance_app.guidance.cells import Piece, Strips, cells_of, cut, cut_inside, strips_over
+from guidance_app.guidance.cells import cells_of, cut, cut_inside, fitted, strips_over
 from guidance_app.guidance.direction import pass_heading
 from guidance_app.guidance.headland import Headland, headland_of, laps_only
 from guidance_app.guidance.leftover import Leftover, leftovers
-from guidance_app.guidance.request import PlanRequest
+from guidance_app.guidance.request import LastPass, PlanRequest
 from guidance_app.guidance.room import Room
 from guidance_app.guidance.route import Cell
 from guidance_app.guidance.swaths import swath, united
@@ -33,7 +34,7 @@ class Layout:
     spacing: float
     cells: tuple[Cell, ...]
     leftovers: tuple[Leftover, ...]
-    worked: shapely.Geometry
+    worked: BaseGeometry
     swaths_area: float
 
 
@@ -66,12 +67,13 @@ def _cells(mainland: tuple[Polygon, ...], heading: float, request: PlanRequest) 
         return (), request.spacing
     across = _line_across(heading, request)
     strips = strips_over(mainland, heading, request.spacing, request.last_pass, across)
-    pieces = _pieces(mainland, strips, request)
+    if not request.lengthen:
+        pieces = cut_inside(mainland, strips)
+    elif across is None and request.last_pass is LastPass.OVERLAP:
+        strips, pieces = fitted(mainland, strips)
+    else:
+        pieces = cut(mainland, strips)
     return tuple(Cell(run, strips) for run in cells_of(pieces)), strips.spacing
-
-
-def _pieces(mainland: tuple[Polygon, ...], strips: Strips, request: PlanRequest) -> tuple[Piece, ...]:
-    return cut(mainland, strips) if request.lengthen else cut_inside(mainland, strips)
 
 
 def _line_across(heading: float, request: PlanRequest) -> float | None:

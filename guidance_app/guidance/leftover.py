@@ -6,12 +6,12 @@ end it stops where the front reaches the boundary, and is driven out of backward
 
 import itertools
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import shapely
 from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from guidance_app.angles import heading_between
 from guidance_app.guidance.cells import Strips
@@ -28,7 +28,7 @@ SLIVER = 0.12
 """Working widths; what is narrower than twice this is not worth a pass."""
 
 SMALLEST = 0.5
-"""Square working widths; a smaller leftover is not worth the way there, nor one worked by driving less than a radius."""
+"""Square working widths; a smaller leftover is not worth the way there, nor one shorter than a radius."""
 
 NEGLIGIBLE = 2e-4
 """Part of the field below which a leftover is left, however large."""
@@ -63,12 +63,14 @@ class LeftoverRun:
     @property
     def start(self) -> FloatArray:
         """Where it begins, (2,): east, north."""
-        return self.lines[0][0]
+        first: FloatArray = self.lines[0][0]
+        return first
 
     @property
     def end(self) -> FloatArray:
         """Where it ends."""
-        return self.lines[-1][1]
+        last: FloatArray = self.lines[-1][1]
+        return last
 
     def tasks(self, done: int) -> list[Task]:
         """The passes, numbered from ``done`` + 1 across the leftover."""
@@ -76,7 +78,7 @@ class LeftoverRun:
 
 
 def leftovers(
-    ground: Polygon, worked: shapely.Geometry, room: Room, request: PlanRequest, heading: float | None = None
+    ground: Polygon, worked: BaseGeometry, room: Room, request: PlanRequest, heading: float | None = None
 ) -> list[Leftover]:
     """Strips for every leftover that is worth working and has room for the machine, along ``heading`` if given."""
     sliver = SLIVER * request.width
@@ -92,7 +94,7 @@ def runs_of(leftover: Leftover, order: PassOrder) -> list[LeftoverRun]:
     return [_run(leftover, order, from_last, way) for from_last, way in ways]
 
 
-def _run(leftover: Leftover, order: PassOrder, from_last: bool, way: int) -> LeftoverRun:  # noqa: FBT001
+def _run(leftover: Leftover, order: PassOrder, from_last: bool, way: int) -> LeftoverRun:
     strips = leftover.lines[::-1] if from_last else leftover.lines
     lines = [strips[order.sequence[0]][way]]
     for place in order.sequence[1:]:

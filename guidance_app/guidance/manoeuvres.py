@@ -1,9 +1,9 @@
 """Paths of bounded curvature between poses: arcs of one radius and straights, forward or with one leg backward.
 
-The words are the six of Dubins (1957), and after Reeds and Shepp (1990) those whose middle leg is driven backward, which
-turn on a narrow headland (fishtail), or that are driven backward all the way. All functions work on many pairs of poses at once. Angles here
-are yaws, counter-clockwise from east, because the arithmetic is that of circles; nothing of it leaves this file but
-polylines and lengths.
+The words are the six of Dubins (1957), and after Reeds and Shepp (1990) those whose middle leg is driven backward,
+which turn on a narrow headland (fishtail), or that are driven backward all the way. All functions work on many pairs of
+poses at once. Angles here are yaws, counter-clockwise from east, because the arithmetic is that of circles;
+nothing of it leaves this file but polylines and lengths.
 """
 
 from collections.abc import Sequence
@@ -27,8 +27,11 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Manoeuvres:
-    """Candidates as pieces of constant curvature. ``start`` (C, 3): east, north, yaw. ``turns`` (C, P): 1 left, 0
-    straight, -1 right. ``lengths`` (C, P): metres, negative backward; NaN where a candidate does not exist."""
+    """Candidates as pieces of constant curvature.
+
+    ``start`` (C, 3): east, north, yaw. ``turns`` (C, P): 1 left, 0 straight, -1 right. ``lengths`` (C, P): metres,
+    negative backward; NaN where a candidate does not exist.
+    """
 
     start: FloatArray
     turns: FloatArray
@@ -91,7 +94,8 @@ def backed(start: FloatArray, end: FloatArray, radius: float) -> Manoeuvres:
 
 
 def _about(poses: FloatArray) -> FloatArray:
-    return poses + np.array([0.0, 0.0, np.pi])
+    turned: FloatArray = poses + np.array([0.0, 0.0, np.pi])
+    return turned
 
 
 def stacked(several: Sequence[Manoeuvres], pairs: int) -> Manoeuvres:

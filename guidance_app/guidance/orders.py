@@ -5,7 +5,7 @@ round trip is the boustrophedon, transfer leaves passes out and fills them back,
 in lands.
 """
 
-from itertools import chain
+from itertools import chain, pairwise
 
 __all__ = ["lands", "neighbours", "racetrack", "skipping"]
 
@@ -33,7 +33,7 @@ def lands(count: int, land: int) -> tuple[int, ...]:
     """
     number = max(1, round(count / land)) if count else 0
     edges = [count * part // number for part in range(number + 1)] if number else [0]
-    return tuple(chain.from_iterable(_from_the_middle(low, high) for low, high in zip(edges, edges[1:], strict=False)))
+    return tuple(chain.from_iterable(_from_the_middle(low, high) for low, high in pairwise(edges)))
 
 
 def _from_the_middle(low: int, high: int) -> list[int]:

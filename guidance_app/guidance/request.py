@@ -2,7 +2,7 @@
 
 A plan's lines are the path of the **working centre**: the point of the rear axle's line that lies ``offset_right`` of
 the tractor's middle. On it a pass is worked from end to end; the tractor itself runs ``offset_right`` to its left, and
-the working point ``offset_back`` behind. Whatever is checked against the boundary is body and implement, not this point.
+the working point ``offset_back`` behind. What is checked against the boundary is body and implement.
 """
 
 import math
@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from types import MappingProxyType
-from typing import Literal
+from typing import Any, Literal
 
 from guidance_app.documents import Direction, HitchKind, Implement, Method, Operation, Tractor
 
@@ -208,7 +208,7 @@ def request_from_documents(
     )
 
 
-def _chosen(operation: Operation) -> dict[str, object]:
+def _chosen(operation: Operation) -> dict[str, Any]:
     typed = operation.direction is Direction.TYPED
     return {
         "method": operation.method,

@@ -52,21 +52,21 @@ class Room:
     def fits_poses(self, poses: FloatArray) -> BoolArray:
         """The same for poses (C, K, 3); corners' traces between neighbouring poses are checked too."""
         corners = self._corners(poses)
-        outlines = shapely.linestrings(corners)
+        outlines = np.asarray(shapely.linestrings(corners))
         traces = shapely.linestrings(np.swapaxes(corners, 1, 2))
-        inside: BoolArray = shapely.covers(self.ground, traces).all(axis=1)
-        inside[inside] = shapely.covers(self.ground, outlines[inside]).all(axis=1)
+        inside: BoolArray = np.all(np.asarray(shapely.covers(self.ground, traces)), axis=1)
+        inside[inside] = np.asarray(shapely.covers(self.ground, outlines[inside])).all(axis=1)
         return inside
 
     def fits_each(self, poses: FloatArray) -> BoolArray:
         """For single poses (M, 3) whether the machine stays inside there."""
-        inside: BoolArray = shapely.covers(self.ground, shapely.linestrings(self._corners(poses)))
+        inside: BoolArray = np.asarray(shapely.covers(self.ground, shapely.linestrings(self._corners(poses))))
         return inside
 
     def path_inside(self, poses: FloatArray) -> BoolArray:
         """For poses (C, K, 3) whether the path itself stays inside."""
         lines = shapely.linestrings(np.ascontiguousarray(poses[..., :2]))
-        covered: BoolArray = shapely.covers(self.polygon, lines)
+        covered: BoolArray = np.asarray(shapely.covers(self.polygon, lines))
         return covered
 
     def missing(self, poses: FloatArray) -> FloatArray:

@@ -73,7 +73,8 @@ class Run:
         return self._end(-1, start=False)
 
     def _end(self, place: int, *, start: bool) -> FloatArray:
-        return self.points(place)[0 if start else -1]
+        end: FloatArray = self.points(place)[0 if start else -1]
+        return end
 
     def points(self, place: int) -> FloatArray:
         """The line of one pass in driving order, (2, 2)."""
@@ -106,7 +107,7 @@ def runs_of(cell: Cell, order: PassOrder) -> list[Run]:
     return [_run(cell, order, from_last, along) for from_last in sides for along in (True, False)]
 
 
-def _run(cell: Cell, order: PassOrder, from_last: bool, along: bool) -> Run:  # noqa: FBT001
+def _run(cell: Cell, order: PassOrder, from_last: bool, along: bool) -> Run:
     count = len(cell.pieces)
     sequence = tuple(count - 1 - place if from_last else place for place in order.sequence)
     ways = [along]
@@ -115,7 +116,7 @@ def _run(cell: Cell, order: PassOrder, from_last: bool, along: bool) -> Run:  # 
     return Run(cell, sequence, tuple(ways), from_last)
 
 
-def _nearer(before: Piece, here: Piece, along: bool) -> bool:  # noqa: FBT001
+def _nearer(before: Piece, here: Piece, along: bool) -> bool:
     """Whether the next piece is driven along the strips' heading, from its end nearer to where the last one ended."""
     at = before.high if along else before.low
     return abs(here.low - at) < abs(here.high - at)

@@ -7,6 +7,7 @@ has one.
 from collections.abc import Sequence
 
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from guidance_app.guidance.task import Task
 
@@ -19,12 +20,14 @@ ARC = 8
 """Chords in a quarter circle where a swath bends."""
 
 
-def swath(task: Task, width: float) -> shapely.Geometry:
+def swath(task: Task, width: float) -> BaseGeometry:
     """What one task works, with square ends."""
     line = shapely.linearrings(task.points) if task.closed else shapely.linestrings(task.points)
-    return shapely.buffer(line, width / 2, cap_style="flat", quad_segs=ARC)
+    worked = shapely.buffer(line, width / 2, cap_style="flat", quad_segs=ARC)
+    assert isinstance(worked, BaseGeometry)
+    return worked
 
 
-def united(swaths: Sequence[shapely.Geometry]) -> shapely.Geometry:
+def united(swaths: Sequence[BaseGeometry]) -> BaseGeometry:
     """The ground worked once or more often."""
     return shapely.union_all(list(swaths), grid_size=GRID)

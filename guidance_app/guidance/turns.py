@@ -14,7 +14,6 @@ import numpy as np
 import shapely
 
 from guidance_app.guidance.manoeuvres import (
-    IntArray,
     Manoeuvres,
     backed,
     join,
@@ -23,7 +22,7 @@ from guidance_app.guidance.manoeuvres import (
     with_straights,
 )
 from guidance_app.guidance.request import PlanRequest
-from guidance_app.guidance.room import BoolArray, Room
+from guidance_app.guidance.room import Room
 from guidance_app.model import FloatArray
 
 __all__ = ["Leg", "Turn", "Turner", "leg_of", "turn_along"]
@@ -229,7 +228,7 @@ def _leg(move: Manoeuvres, joints: FloatArray, pieces: Sequence[int], reverse: b
     return leg_of(poses[:, :2], reverse)
 
 
-def leg_of(points: FloatArray, reverse: bool) -> Leg:  # noqa: FBT001
+def leg_of(points: FloatArray, reverse: bool) -> Leg:
     """A leg along these points."""
     return Leg(points.copy(), reverse, float(shapely.length(shapely.linestrings(points))))
 

@@ -13,8 +13,8 @@ import shapely
 from shapely import MultiLineString, Polygon
 
 from guidance_app.guidance.blunting import eased_stroke
-from guidance_app.guidance.corridor import Corridor
 from guidance_app.guidance.clearance import free_ground, parts_of
+from guidance_app.guidance.corridor import Corridor
 from guidance_app.guidance.manoeuvres import IntArray, Manoeuvres
 from guidance_app.guidance.ring import Ring, Stroke
 from guidance_app.guidance.room import BoolArray
@@ -208,7 +208,8 @@ class _Tracks:
         ring = self._rings[self._track[join]]
         if join == leave:
             return self.poses[join : join + 1, :2]
-        return ring.stretch(float(self._along[join]), float(self._along[leave]))
+        points: FloatArray = ring.stretch(float(self._along[join]), float(self._along[leave]))
+        return points
 
 
 def _chained(onto: Turn, ridden: FloatArray, off: Turn) -> Turn:
