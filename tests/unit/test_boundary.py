@@ -24,6 +24,7 @@ def remarks_of(rings: list[list[Position]]) -> str:
     return "; ".join(checked_boundary(rings).remarks)
 
 
+@settings(max_examples=25, deadline=None)
 @given(st.integers(0, 20), st.booleans(), st.integers(0, 3))
 def test_start_orientation_and_repeats_do_not_change_the_ground(start: int, turned: bool, repeats: int) -> None:
     corners = [(90 * math.cos(a), 60 * math.sin(a)) for a in (2 * math.pi * k / 21 for k in range(21))]

@@ -26,6 +26,7 @@ AREA_TOLERANCE = 1e-4
 """0.01 %."""
 
 RING = [list(corner) for corner in ring_of(rectangle(200, 100))]
+WRITTEN = written_field(field_named("F"))
 POLYGON = {"type": "Polygon", "coordinates": [RING]}
 
 
@@ -219,9 +220,8 @@ def test_a_file_of_200_megabytes_is_refused_unread(tmp_path: Path) -> None:
 
 @given(st.binary(max_size=60), st.integers(0, 10_000))
 def test_damaged_bytes_give_drafts_or_a_boundary_error(noise: bytes, place: int) -> None:
-    content = written_field(field_named("F"))
-    cut = place % len(content)
-    damaged = content[:cut] + noise + content[cut + len(noise) :]
+    cut = place % len(WRITTEN)
+    damaged = WRITTEN[:cut] + noise + WRITTEN[cut + len(noise) :]
     with contextlib.suppress(BoundaryError):
         assert read_drafts(damaged)
 
