@@ -7,7 +7,7 @@ strips belong to one cell while each is the other's best neighbour.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
@@ -17,14 +17,11 @@ from guidance_app.angles import east_north
 from guidance_app.guidance.request import LastPass
 from guidance_app.model import FloatArray
 
-__all__ = ["Piece", "Strips", "cells_of", "cut", "cut_inside", "fitted", "strips_over"]
+__all__ = ["Piece", "Strips", "cells_of", "cut", "cut_inside", "strips_over"]
 
 ROUNDING = 1e-6
 SLIVER = 0.02
 """Square metres of mainland in a strip that are not worth a pass."""
-
-PLACES = 4
-"""Places over the mainland at which strips are tried."""
 
 SHORTEST = 0.5
 """Metres; a shorter piece of a strip's middle is not worth a pass."""
@@ -52,10 +49,6 @@ class Strips:
     def east_north(self, points: FloatArray) -> FloatArray:
         """The way back; the transform is its own inverse."""
         return self.along_across(points)
-
-    def shifted(self, metres: float) -> "Strips":
-        """The same strips farther to the right."""
-        return replace(self, first=self.first + metres)
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,18 +109,6 @@ def cut_inside(mainland: Sequence[Polygon], strips: Strips) -> tuple[Piece, ...]
         bounds = [part.bounds for geometry in inner for part in shapely.get_parts(geometry) if part.length > SHORTEST]
         pieces.extend(Piece(row, low, high) for low, high in _joined([(west, east) for west, _, east, _ in bounds]))
     return tuple(pieces)
-
-
-def fitted(mainland: Sequence[Polygon], strips: Strips) -> tuple[Strips, tuple[Piece, ...]]:
-    """The strips, moved to where they are shortest while they still cover the mainland, and their pieces.
-
-    Strips together are wider than the mainland; where the rest lies over the headland is free.
-    """
-    across = strips.along_across(shapely.get_coordinates(list(mainland)))[:, 1]
-    spare = strips.count * strips.spacing - float(across.max() - across.min())
-    shifts = [-spare * part / (PLACES - 1) for part in range(PLACES)] if spare > SHORTEST else [0.0]
-    tried = [(strips.shifted(shift), cut(mainland, strips.shifted(shift))) for shift in shifts]
-    return min(tried, key=lambda each: (len(each[1]), sum(piece.length for piece in each[1])))
 
 
 def _spans(part: Polygon, bottom: float, top: float) -> list[tuple[float, float]]:

@@ -8,7 +8,8 @@ import shapely
 
 from guidance_app.guidance.lap import Lap
 from guidance_app.guidance.task import Task, side_tasks
-from guidance_app.guidance.turns import Turn, Turner
+from guidance_app.guidance.turn import Turn
+from guidance_app.guidance.turns import Turner
 from guidance_app.guidance.ways import Ways
 from guidance_app.model import FloatArray, Segment, SegmentKind
 

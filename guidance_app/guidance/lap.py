@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from guidance_app.guidance.ring import Ring
-from guidance_app.guidance.turns import Leg, Turn, leg_of
+from guidance_app.guidance.turn import Leg, Turn, leg_of
 from guidance_app.model import FloatArray
 
 __all__ = ["Corner", "Lap", "Side"]

@@ -8,11 +8,11 @@ from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from guidance_app.documents import Direction, Method
-from guidance_app.guidance.cells import cells_of, cut, cut_inside, fitted, strips_over
+from guidance_app.guidance.cells import cells_of, cut, cut_inside, strips_over
 from guidance_app.guidance.direction import pass_heading
 from guidance_app.guidance.headland import Headland, headland_of, laps_only
 from guidance_app.guidance.leftover import Leftover, leftovers
-from guidance_app.guidance.request import LastPass, PlanRequest
+from guidance_app.guidance.request import PlanRequest
 from guidance_app.guidance.room import Room
 from guidance_app.guidance.route import Cell
 from guidance_app.guidance.swaths import swath, united
@@ -67,12 +67,7 @@ def _cells(mainland: tuple[Polygon, ...], heading: float, request: PlanRequest) 
         return (), request.spacing
     across = _line_across(heading, request)
     strips = strips_over(mainland, heading, request.spacing, request.last_pass, across)
-    if not request.lengthen:
-        pieces = cut_inside(mainland, strips)
-    elif across is None and request.last_pass is LastPass.OVERLAP:
-        strips, pieces = fitted(mainland, strips)
-    else:
-        pieces = cut(mainland, strips)
+    pieces = cut(mainland, strips) if request.lengthen else cut_inside(mainland, strips)
     return tuple(Cell(run, strips) for run in cells_of(pieces)), strips.spacing
 
 

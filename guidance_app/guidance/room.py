@@ -14,7 +14,7 @@ __all__ = ["TOUCH", "Room"]
 TOUCH = 0.05
 """Metres that body or implement may stick out: a lap along the boundary touches it with the implement's end."""
 
-SPACING, FEWEST, MOST = 1.0, 24, 150
+SPACING, FEWEST, MOST = 1.2, 16, 150
 """Metres between the poses at which a candidate is checked, and how many there are at least and at most."""
 
 TRACTOR_REAR = -0.6

@@ -7,7 +7,7 @@ import numpy as np
 
 from guidance_app.guidance.cells import Piece, Strips
 from guidance_app.guidance.lap import Lap
-from guidance_app.guidance.turns import Turn
+from guidance_app.guidance.turn import Turn
 from guidance_app.model import FloatArray, SegmentKind
 
 __all__ = ["Task", "pass_line", "pose_at", "side_tasks"]

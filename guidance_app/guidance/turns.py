@@ -7,28 +7,22 @@ with the metres that are missing, on a path that itself stays inside.
 """
 
 import itertools
-from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
-import shapely
 
 from guidance_app.guidance.manoeuvres import (
     Manoeuvres,
     backed,
     join,
-    poses_along,
     stacked,
     with_straights,
 )
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.guidance.room import Room
+from guidance_app.guidance.turn import Turn, turns_along
 from guidance_app.model import FloatArray
 
-__all__ = ["Leg", "Turn", "Turner", "leg_of", "turn_along"]
-
-POINTS = 60
-"""A leg of a turn never has more points."""
+__all__ = ["Turner"]
 
 RADIUS_MARGIN = 1.002
 """Turns are laid on a circle wider by this, so that their chords do not bend more than the turning radius."""
@@ -53,30 +47,6 @@ MOST_BENT_BACK = 1.6
 
 SMALLEST_MISSING = 0.01
 """Metres; a turn that does not fit misses at least this."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Leg:
-    """A stretch of a turn in one gear, shape (N, 2)."""
-
-    points: FloatArray
-    reverse: bool
-    length: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Turn:
-    """A way from pose to pose. ``missing`` is 0 when it fits; ``transfer`` if it follows something on its way."""
-
-    legs: tuple[Leg, ...]
-    length: float
-    missing: float = 0.0
-    transfer: bool = False
-
-    @property
-    def fits(self) -> bool:
-        """Whether the machine stays inside."""
-        return self.missing == 0
 
 
 class Turner:
@@ -137,7 +107,7 @@ class Turner:
             fits = self.room.fits(moves.take(rows))
             if fits.any():
                 row = int(rows[np.argmax(fits)])
-                return row // words, turn_along(moves.take(np.array([row])))
+                return row // words, turns_along(moves.take(np.array([row])))[0]
         return None
 
     def missing(self, start: FloatArray, end: FloatArray) -> float:
@@ -195,42 +165,12 @@ class Turner:
             fits = np.isfinite(total[left[:, None], tried])
             fits[fits] = self.room.fits(moves.take(rows[fits]))
             good = fits.any(axis=1)
-            for place, row in zip(left[good], rows[good, fits[good].argmax(axis=1)], strict=True):
-                found[place] = turn_along(moves.take(np.array([row])))
+            chosen = moves.take(rows[good, fits[good].argmax(axis=1)])
+            for place, turn in zip(left[good], turns_along(chosen), strict=True):
+                found[place] = turn
             left = left[~good]
             low, many = low + many, min(2 * many, MOST_AT_ONCE)
         return found
-
-
-def turn_along(move: Manoeuvres) -> Turn:
-    """The turn of a single candidate, cut where the gear changes."""
-    lengths = move.lengths[0]
-    joints = np.concatenate([[0.0], np.cumsum(np.abs(lengths))])
-    legs = []
-    pieces = [place for place in range(len(lengths)) if abs(lengths[place]) > 1e-6]
-    for reverse, group in itertools.groupby(pieces, key=lambda place: bool(lengths[place] < 0)):
-        run = list(group)
-        legs.append(_leg(move, joints, run, reverse))
-    return Turn(tuple(legs), float(joints[-1]))
-
-
-def _leg(move: Manoeuvres, joints: FloatArray, pieces: Sequence[int], reverse: bool) -> Leg:
-    """Points of neighbouring pieces: the ends of straights, and arcs in even steps."""
-    arcs = [place for place in pieces if move.turns[0, place]]
-    bent = sum(joints[place + 1] - joints[place] for place in arcs)
-    spare = POINTS - len(pieces) - 1
-    stations = [joints[pieces[0]]]
-    for place in pieces:
-        size = joints[place + 1] - joints[place]
-        steps = max(1, min(int(spare * size / bent), int(np.ceil(size / (0.1 * move.radius))))) if place in arcs else 1
-        stations.extend(joints[place] + size * np.arange(1, steps + 1) / steps)
-    poses = poses_along(move, np.array(stations)[None])[0]
-    return leg_of(poses[:, :2], reverse)
-
-
-def leg_of(points: FloatArray, reverse: bool) -> Leg:
-    """A leg along these points."""
-    return Leg(points.copy(), reverse, float(shapely.length(shapely.linestrings(points))))
 
 
 def _ahead(poses: FloatArray, metres: float) -> FloatArray:

@@ -18,7 +18,8 @@ from guidance_app.guidance.corridor import Corridor
 from guidance_app.guidance.manoeuvres import IntArray, Manoeuvres
 from guidance_app.guidance.ring import Ring, Stroke
 from guidance_app.guidance.room import BoolArray
-from guidance_app.guidance.turns import Leg, Turn, Turner, leg_of, turn_along
+from guidance_app.guidance.turn import Leg, Turn, leg_of, turns_along
+from guidance_app.guidance.turns import Turner
 from guidance_app.model import FloatArray
 
 __all__ = ["Ways"]
@@ -162,7 +163,7 @@ class _Side:
 
     def turn(self, place: int) -> Turn:
         """The turn of the best candidate that fits there."""
-        return turn_along(self._moves.take(self._fitting[place : place + 1]))
+        return turns_along(self._moves.take(self._fitting[place : place + 1]))[0]
 
     def _promise(self) -> None:
         self.promised = np.minimum(self._open.min(axis=1), self.certain)
@@ -218,7 +219,7 @@ def _chained(onto: Turn, ridden: FloatArray, off: Turn) -> Turn:
     legs: list[Leg] = []
     for leg in (*onto.legs, *middle, *off.legs):
         if legs and legs[-1].reverse == leg.reverse:
-            legs[-1] = leg_of(np.vstack([legs[-1].points, leg.points[1:]]), leg.reverse)
+            legs[-1] = leg_of(np.vstack([legs[-1].points, leg.points[1:]]), reverse=leg.reverse)
         else:
             legs.append(leg)
     return Turn(tuple(legs), sum(leg.length for leg in legs), transfer=True)
