@@ -51,12 +51,14 @@ class Room:
 
     def fits_poses(self, poses: FloatArray) -> BoolArray:
         """The same for poses (C, K, 3); corners' traces between neighbouring poses are checked too."""
-        corners = self._corners(poses)
-        outlines = np.asarray(shapely.linestrings(corners))
-        traces = shapely.linestrings(np.swapaxes(corners, 1, 2))
-        inside: BoolArray = np.all(np.asarray(shapely.covers(self.ground, traces)), axis=1)
-        inside[inside] = np.asarray(shapely.covers(self.ground, outlines[inside])).all(axis=1)
-        return inside
+        inside = shapely.contains_xy(self.ground, poses[..., 0], poses[..., 1]).all(axis=1)
+        corners = self._corners(poses[inside])
+        traces = shapely.covers(self.ground, shapely.linestrings(np.swapaxes(corners, 1, 2))).all(axis=1)
+        inside[inside] = traces
+        outlines = shapely.covers(self.ground, shapely.linestrings(corners[traces])).all(axis=1)
+        inside[inside] = outlines
+        fitting: BoolArray = inside
+        return fitting
 
     def fits_each(self, poses: FloatArray) -> BoolArray:
         """For single poses (M, 3) whether the machine stays inside there."""
