@@ -18,7 +18,8 @@ from guidance_app.documents import Job
 from guidance_app.geodesy import FieldFrame
 from guidance_app.guidance.planning import plan_operation, request_from_documents
 from guidance_app.guidance.room import Room
-from guidance_app.guidance.turns import Leg, Turner
+from guidance_app.guidance.turn import Leg
+from guidance_app.guidance.turns import Turner
 from guidance_app.model import Chunk, FloatArray, Segment, SegmentKind, SourceUp
 from guidance_app.simulation.driver import DriverSettings
 from guidance_app.simulation.job import JobSettings, simulated_epochs
