@@ -51,14 +51,14 @@ class Room:
 
     def fits_poses(self, poses: FloatArray) -> BoolArray:
         """The same for poses (C, K, 3); corners' traces between neighbouring poses are checked too."""
-        inside = shapely.contains_xy(self.ground, poses[..., 0], poses[..., 1]).all(axis=1)
+        path = np.asarray(shapely.contains_xy(self.ground, poses[..., 0], poses[..., 1]))
+        inside: BoolArray = np.all(path, axis=1)
         corners = self._corners(poses[inside])
-        traces = shapely.covers(self.ground, shapely.linestrings(np.swapaxes(corners, 1, 2))).all(axis=1)
+        traces = np.asarray(shapely.covers(self.ground, shapely.linestrings(np.swapaxes(corners, 1, 2)))).all(axis=1)
         inside[inside] = traces
-        outlines = shapely.covers(self.ground, shapely.linestrings(corners[traces])).all(axis=1)
+        outlines = np.asarray(shapely.covers(self.ground, shapely.linestrings(corners[traces]))).all(axis=1)
         inside[inside] = outlines
-        fitting: BoolArray = inside
-        return fitting
+        return inside
 
     def fits_each(self, poses: FloatArray) -> BoolArray:
         """For single poses (M, 3) whether the machine stays inside there."""
