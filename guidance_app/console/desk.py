@@ -7,6 +7,7 @@ from typing import ClassVar, Protocol
 import viser
 
 from guidance_app.documents import Units
+from guidance_app.language import Words
 from guidance_app.model import Command, Snapshot
 from guidance_app.runtime import ReplayControl, ReplayState
 from guidance_app.view.camera import ViewMode
@@ -36,6 +37,8 @@ class Hands:
     set_night: Callable[[bool], None]
     desk: Callable[[], Desk]
     replay: ReplayControl | None
+    words: Words
+    """In the driver's language; when it changes, the panels are made anew."""
 
 
 class Panel(Protocol):

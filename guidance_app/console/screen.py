@@ -18,6 +18,7 @@ from guidance_app.console.desk import Desk, Hands, Panel
 from guidance_app.console.ground import Ground
 from guidance_app.console.moving import ClientScene, Models
 from guidance_app.console.panels import PANELS
+from guidance_app.language import words_for
 from guidance_app.model import Snapshot
 from guidance_app.runtime import Session
 from guidance_app.view.camera import ViewMode
@@ -225,6 +226,7 @@ class Screen:
             set_night=self._wish_night,
             desk=desk,
             replay=self._session.replay,
+            words=words_for(self._job.settings.language),
         )
 
     def _make_panels(self, client: _Client) -> None:
