@@ -25,8 +25,9 @@ from guidance_app.decode.habits import Habits
 from guidance_app.decode.nmea import has_checksum, read_line
 from guidance_app.decode.plausibility import Place, Plausibility
 from guidance_app.decode.sentence import DecodeError, Sentence
+from guidance_app.decode.sky import Sky
 from guidance_app.decode.usual import Usual
-from guidance_app.model import Attitude, Chunk, Fix, FixQuality, NoFix, Observation, Rejected
+from guidance_app.model import Attitude, Chunk, Fix, FixQuality, NoFix, Observation, Rejected, Satellite
 
 __all__ = ["Decoder"]
 
@@ -63,6 +64,7 @@ class Decoder:
         self._habits = Habits()
         self._plausibility = Plausibility()
         self._usual = Usual()
+        self._sky = Sky()
         self._epoch: Epoch | None = None
         self._closed_time: float | None = None
         self._early: dict[str, tuple[Sentence, float]] = {}
@@ -86,6 +88,11 @@ class Decoder:
         return self._kinds
 
     @property
+    def sky(self) -> tuple[Satellite, ...]:
+        """The satellites in view, as the last whole round of GSV sentences of each system told them."""
+        return self._sky.satellites
+
+    @property
     def wake_at(self) -> float | None:
         """Session time at which the open epoch closes without more bytes; None when nothing is open."""
         epoch = self._epoch
@@ -98,6 +105,7 @@ class Decoder:
         copy._rejected, copy._kinds = self._rejected.copy(), self._kinds.copy()
         copy._framer, copy._clock, copy._habits = self._framer.fork(), self._clock.fork(), self._habits.fork()
         copy._plausibility, copy._usual = self._plausibility.fork(), self._usual.fork()
+        copy._sky = self._sky.fork()
         copy._epoch = None if self._epoch is None else self._epoch.fork()
         copy._early = self._early.copy()
         return copy
@@ -159,6 +167,8 @@ class Decoder:
                 self._attitude_valid = sentence.attitude_valid is not False
             case "GSV":
                 self._hear(arrival)
+                if sentence.in_view is not None:
+                    self._sky.take(sentence.in_view, arrival)
             case _:
                 self._take_attitude(sentence, arrival, out)
 

@@ -18,6 +18,7 @@ KNOT = 1852.0 / 3600.0
 """One knot in metres a second."""
 
 SECONDS_PER_HOUR = 3600
+_FOUR = {"a": 0, "b": 1, "c": 2, "d": 3}
 _EPOCH = date(1970, 1, 1).toordinal()
 
 _match_number = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)").fullmatch
@@ -29,10 +30,11 @@ _match_minutes = re.compile(r"([0-9]{1,3})([0-5][0-9])(?:\.([0-9]*))?").fullmatc
 class Fields:
     """The texts of a sentence by the names that its layout gives them."""
 
-    __slots__ = ("_index", "_texts", "kind")
+    __slots__ = ("_index", "_texts", "kind", "talker")
 
-    def __init__(self, kind: str, index: Mapping[str, int], texts: Sequence[str]) -> None:
+    def __init__(self, kind: str, index: Mapping[str, int], texts: Sequence[str], talker: str = "") -> None:
         self.kind = kind
+        self.talker = talker
         self._index = index
         self._texts = texts
 
@@ -44,6 +46,12 @@ class Fields:
     def has(self, name: str) -> bool:
         """Whether the sentence is long enough to hold the field, empty or not."""
         return self._index[name] < len(self._texts)
+
+    def behind(self, name: str) -> "tuple[Fields, ...]":
+        """The fields behind this one, four at a time as ``a`` to ``d``; the last may be shorter."""
+        first = self._index[name] + 1
+        texts = self._texts[first:]
+        return tuple(Fields(self.kind, _FOUR, texts[at : at + 4]) for at in range(0, len(texts), 4))
 
     def number(self, name: str) -> float | None:
         """A decimal number, no exponent."""

@@ -4,8 +4,8 @@ Each takes the fields and gives a ``Sentence``, or raises ``DecodeError``. NMEA 
 """
 
 from guidance_app.decode.fields import KNOT, Fields, days_since_1970
-from guidance_app.decode.sentence import DecodeError, Sentence
-from guidance_app.model import FixQuality
+from guidance_app.decode.sentence import DecodeError, InView, Sentence
+from guidance_app.model import FixQuality, Satellite
 
 __all__ = ["read_gga", "read_gll", "read_gns", "read_gsa", "read_gst", "read_gsv", "read_rmc", "read_vtg", "read_zda"]
 
@@ -148,11 +148,30 @@ def read_gsa(fields: Fields) -> Sentence:
 
 
 def read_gsv(fields: Fields) -> Sentence:
-    """Satellites in view: nothing that a fix is made of, yet it must be well formed."""
-    fields.count("num_messages")
-    fields.count("msg_num")
+    """Satellites in view, four a sentence at most: number, elevation, azimuth, signal. Nothing that a fix is made of.
+
+    Since version 4.10 the last field, alone behind the fours, is the signal's identifier.
+    """
+    count, number = fields.count("num_messages"), fields.count("msg_num")
     fields.count("num_sv_in_view")
-    return Sentence(kind=fields.kind)
+    fours = fields.behind("num_sv_in_view")
+    signal = fours[-1].text("a") if fours and not fours[-1].has("b") else ""
+    satellites = tuple(_satellite(four, fields.talker) for four in fours if four.has("b") and four.text("a"))
+    if count is None or number is None:
+        return Sentence(kind=fields.kind)
+    return Sentence(kind=fields.kind, in_view=InView(fields.talker, signal, number, count, satellites))
+
+
+def _satellite(four: Fields, system: str) -> Satellite:
+    number = four.count("a")
+    assert number is not None
+    return Satellite(
+        system,
+        number,
+        elevation=four.angle("b", -90.0, 90.0),
+        azimuth=four.direction("c") if four.has("c") else None,
+        signal=four.between("d", 0.0, 99.0) if four.has("d") else None,
+    )
 
 
 def read_zda(fields: Fields) -> Sentence:

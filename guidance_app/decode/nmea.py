@@ -187,7 +187,7 @@ def read_line(line: str) -> Sentence:
         raise DecodeError("unknown sentence")
     if len(texts) - first < reader.least:
         raise DecodeError("too short")
-    return reader.read(Fields(key, reader.index, texts[first:]))
+    return reader.read(Fields(key, reader.index, texts[first:], name[:2]))
 
 
 def xor_of(body: str) -> int:

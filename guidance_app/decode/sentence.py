@@ -6,13 +6,24 @@ metres a second) and signs too (roll right side down, pitch nose up, yaw rate cl
 
 from dataclasses import dataclass
 
-from guidance_app.model import FixQuality
+from guidance_app.model import FixQuality, Satellite
 
-__all__ = ["DecodeError", "Sentence"]
+__all__ = ["DecodeError", "InView", "Sentence"]
 
 
 class DecodeError(Exception):
     """A line that is not believed; the text is the reason, one of few phrases, to be counted."""
+
+
+@dataclass(frozen=True, slots=True)
+class InView:
+    """One of the ``count`` sentences in which a receiver tells a system's satellites, one round for each ``signal``."""
+
+    system: str
+    signal: str
+    number: int
+    count: int
+    satellites: tuple[Satellite, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +65,7 @@ class Sentence:
     yaw_rate: float | None = None
     heading_valid: bool | None = None
     attitude_valid: bool | None = None
+    in_view: InView | None = None
 
     @property
     def has_position(self) -> bool:

@@ -12,7 +12,8 @@ from typing import Any, assert_never
 
 from guidance_app.decode.decoder import Decoder
 from guidance_app.documents import Job
-from guidance_app.engine.link import after_chunk, after_down, after_up
+from guidance_app.engine.attitudes import Attitudes
+from guidance_app.engine.link import after_chunk, after_down, after_up, changed_link, link_of
 from guidance_app.engine.work_done import WorkDone
 from guidance_app.estimation.filter import Filter, FilterSettings
 from guidance_app.estimation.filters import make_filter
@@ -20,6 +21,7 @@ from guidance_app.estimation.prediction import Predictor
 from guidance_app.estimation.reference_point import ImplementPoint, measurement_from_fix
 from guidance_app.geodesy import FieldFrame
 from guidance_app.model import (
+    RECEIVER,
     Attitude,
     Chunk,
     Command,
@@ -73,7 +75,7 @@ class Engine:
         self._filter_name = filter_name or (receiver.filter if receiver.filter_on else OFF)
         self._filter = estimator or make_filter(self._filter_name, settings)
         self._decoders: dict[str, Decoder] = {}
-        self._attitude: Attitude | None = None
+        self._attitudes = Attitudes()
         self._implement = ImplementPoint(job.implement)
         self._predictor = Predictor(settings)
         self._look_ahead = receiver.look_ahead
@@ -102,6 +104,7 @@ class Engine:
         other = copy.copy(self)
         vars(other).update(
             _decoders={link: one.fork() for link, one in self._decoders.items()},
+            _attitudes=self._attitudes.fork(),
             _filter=self._filter.fork(),
             _implement=self._implement.fork(),
             _predictor=self._predictor.fork(),
@@ -127,13 +130,15 @@ class Engine:
             case Commanded():
                 yield self._publish(event.arrival, self._command(event.arrival, event.command))
             case SourceUp():
-                yield self._publish(event.arrival, {"link": after_up(self._snapshot.link, event)})
+                state = after_up(link_of(self._snapshot, event.link), event)
+                yield self._publish(event.arrival, changed_link(event.link, self._snapshot.links_beside, state))
             case SourceDown():
                 decoder = self._decoder(event.link)
                 closed = decoder.finish(event.arrival)
                 if closed:
                     yield from self._observe(Chunk(event.arrival, b"", event.link), closed, decoder)
-                yield self._publish(event.arrival, {"link": after_down(self._snapshot.link, event)})
+                state = after_down(link_of(self._snapshot, event.link), event)
+                yield self._publish(event.arrival, changed_link(event.link, self._snapshot.links_beside, state))
             case _:
                 assert_never(event)
 
@@ -155,15 +160,20 @@ class Engine:
         return self._decoders[link]
 
     def _observe(self, chunk: Chunk, closed: tuple[Observation, ...], decoder: Decoder) -> Iterator[Snapshot]:
-        counts = (decoder.sentences, sum(decoder.rejected.values()))
-        changes: Changes = {"link": after_chunk(self._snapshot.link, chunk, closed, counts)}
+        counts = (decoder.sentences, sum(decoder.rejected.values()), sum(decoder.kinds.values()))
+        before = self._snapshot
+        state = after_chunk(link_of(before, chunk.link), chunk, closed, counts)
+        changes: Changes = changed_link(chunk.link, before.links_beside, state)
+        if decoder.sky is not before.sky and chunk.link == RECEIVER:
+            changes["sky"] = decoder.sky
         for one in closed:
             match one:
                 case Fix():
                     yield self._publish(chunk.arrival, changes | self._fix(one))
                     changes = {}
                 case Attitude():
-                    self._attitude = changes["attitude"] = one
+                    self._attitudes.take(one)
+                    changes["attitude"] = one
                 case NoFix() | Rejected():
                     pass
                 case _:
@@ -180,7 +190,7 @@ class Engine:
         if self._snapshot.fix is not None and fix.t > self._snapshot.fix.t:
             changes["fix_interval"] = fix.t - self._snapshot.fix.t
         try:
-            measurement = measurement_from_fix(fix, self._attitude, self._frame, self._job.tractor)
+            measurement = measurement_from_fix(fix, self._attitudes.at(fix.arrival), self._frame, self._job.tractor)
         except ValueError as error:
             return changes | NO_POSE | {"notices": (*self._notices, str(error))}
         self._raw_pose = self._filter.step(measurement)

@@ -1,13 +1,41 @@
-"""The state of a receiver's link in the driver's words, from what came over it. Pure; ages are the view's."""
+"""The state of each link in the driver's words, from what came over it. Pure; ages are the view's."""
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
-from guidance_app.model import Chunk, Fix, LinkState, LinkStatus, NoFix, Observation, SourceDown, SourceUp
+from guidance_app.model import (
+    CORRECTIONS,
+    RECEIVER,
+    Attitude,
+    Chunk,
+    Fix,
+    LinkState,
+    LinkStatus,
+    NoFix,
+    Observation,
+    Snapshot,
+    SourceDown,
+    SourceUp,
+)
 
-__all__ = ["after_chunk", "after_down", "after_up"]
+__all__ = ["after_chunk", "after_down", "after_up", "changed_link", "link_of"]
 
 
 SILENT = frozenset({LinkStatus.CONNECTING, LinkStatus.NO_DATA, LinkStatus.NO_SENTENCE, LinkStatus.DOWN})
+
+Counts = tuple[int, int, int]
+"""What a decoder has counted: sentences seen, lines and epochs rejected, sentences read."""
+
+
+def link_of(snapshot: Snapshot, link: str) -> LinkState:
+    """The state of the link of this name; of one that has not been heard of, the first one."""
+    return snapshot.link if link == RECEIVER else snapshot.links_beside.get(link, LinkState())
+
+
+def changed_link(link: str, beside: Mapping[str, LinkState], state: LinkState) -> dict[str, Any]:
+    """The members of the snapshot that say this of the link. ``beside`` are the links beside the receiver's so far."""
+    return {"link": state} if link == RECEIVER else {"links_beside": {**beside, link: state}}
 
 
 def _changed(state: LinkState, status: LinkStatus, arrival: float, reason: str) -> LinkState:
@@ -16,7 +44,10 @@ def _changed(state: LinkState, status: LinkStatus, arrival: float, reason: str) 
 
 
 def after_up(state: LinkState, event: SourceUp) -> LinkState:
-    """The source is open; no data yet."""
+    """The source is open; no data yet. A caster gives none that is read here: that it is connected is all."""
+    state = replace(state, what=event.what)
+    if event.link == CORRECTIONS:
+        return _changed(state, LinkStatus.CORRECTED, event.arrival, event.what)
     return _changed(state, LinkStatus.NO_DATA, event.arrival, f"waiting for data from {event.what}")
 
 
@@ -26,13 +57,14 @@ def after_down(state: LinkState, event: SourceDown) -> LinkState:
     return _changed(state, status, event.arrival, event.reason)
 
 
-def after_chunk(state: LinkState, chunk: Chunk, closed: tuple[Observation, ...], counts: tuple[int, int]) -> LinkState:
-    """What came in may change the state. ``counts`` are the decoder's (sentences, rejected) so far."""
+def after_chunk(state: LinkState, chunk: Chunk, closed: tuple[Observation, ...], counts: Counts) -> LinkState:
+    """What came in may change the state. ``counts`` are the decoder's so far."""
     if not chunk.data and not closed:
         return state
     fixes = sum(isinstance(one, Fix) for one in closed)
-    status, reason = _told(state, closed, counts[0], fixes)
-    return LinkState(
+    status, reason = _told(state, chunk.link, closed, counts[2])
+    return replace(
+        state,
         status=status,
         since=state.since if status is state.status else chunk.arrival,
         reason=reason,
@@ -43,15 +75,19 @@ def after_chunk(state: LinkState, chunk: Chunk, closed: tuple[Observation, ...],
     )
 
 
-def _told(state: LinkState, closed: tuple[Observation, ...], sentences: int, fixes: int) -> tuple[LinkStatus, str]:
+def _told(state: LinkState, link: str, closed: tuple[Observation, ...], read: int) -> tuple[LinkStatus, str]:
     """What the link says of itself now, and why."""
-    if fixes:
+    if link != RECEIVER and any(isinstance(one, Attitude) for one in closed):
+        return LinkStatus.ATTITUDE, ""
+    if any(isinstance(one, Fix) for one in closed):
         return LinkStatus.FIX, ""
     without = next((one for one in closed if isinstance(one, NoFix)), None)
     if without is not None:
         return LinkStatus.NO_FIX, without.reason
-    if sentences == 0:
-        return LinkStatus.NO_SENTENCE, "bytes arrive but no sentence is valid: is the baud rate right?"
+    if read == 0:
+        where = f"from {state.what} " if state.what else ""
+        return LinkStatus.NO_SENTENCE, f"bytes arrive {where}but no sentence is valid: is the baud rate right?"
     if state.status in SILENT:
-        return LinkStatus.NO_FIX, "sentences arrive, but no position yet"
+        missing = "position" if link == RECEIVER else "reading"
+        return LinkStatus.NO_FIX, f"sentences arrive, but no {missing} yet"
     return state.status, state.reason

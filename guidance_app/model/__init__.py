@@ -33,10 +33,25 @@ from guidance_app.model.commands import (
 from guidance_app.model.known import LinkState, LinkStatus, OffsetRecord, Snapshot
 from guidance_app.model.lines import Guidance, Pass, Plan, PlanCosts, Segment, SegmentKind, TurnGuide
 from guidance_app.model.motion import Measurement, Pose, Prediction
-from guidance_app.model.wire import Attitude, Chunk, Fix, FixQuality, NoFix, Observation, Rejected
+from guidance_app.model.wire import (
+    ATTITUDE,
+    CORRECTIONS,
+    RECEIVER,
+    Attitude,
+    Chunk,
+    Fix,
+    FixQuality,
+    NoFix,
+    Observation,
+    Rejected,
+    Satellite,
+)
 from guidance_app.model.worked import CoverageTotals, Strip, Trail
 
 __all__ = [
+    "ATTITUDE",
+    "CORRECTIONS",
+    "RECEIVER",
     "Attitude",
     "Chunk",
     "Command",
@@ -65,6 +80,7 @@ __all__ = [
     "Prediction",
     "Rejected",
     "ReverseDirection",
+    "Satellite",
     "Segment",
     "SegmentKind",
     "SetLookAhead",

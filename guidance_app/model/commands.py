@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-from guidance_app.model.wire import Chunk
+from guidance_app.model.wire import RECEIVER, Chunk
 
 __all__ = [
     "Command",
@@ -144,7 +144,7 @@ class SourceDown:
 
     arrival: float
     reason: str
-    link: str = "receiver"
+    link: str = RECEIVER
     ended: bool = False
 
 
@@ -154,7 +154,7 @@ class SourceUp:
 
     arrival: float
     what: str
-    link: str = "receiver"
+    link: str = RECEIVER
 
 
 Event = Chunk | Commanded | SourceDown | SourceUp

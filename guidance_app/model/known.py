@@ -1,5 +1,6 @@
 """All that is known now: the state of the link, the offsets in force, and the snapshot."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -7,7 +8,7 @@ from guidance_app.model.arrays import FloatArray
 from guidance_app.model.commands import OffsetKind, WorkMode
 from guidance_app.model.lines import Guidance, Pass, Plan
 from guidance_app.model.motion import Pose, Prediction
-from guidance_app.model.wire import Attitude, Fix
+from guidance_app.model.wire import Attitude, Fix, Satellite
 from guidance_app.model.worked import CoverageTotals, Trail
 
 __all__ = [
@@ -26,13 +27,19 @@ class LinkStatus(StrEnum):
     NO_SENTENCE = "data but no valid sentence"
     NO_FIX = "no fix"
     FIX = "fix"
+    ATTITUDE = "attitude"
+    """Of an attitude sensor's own link: readings arrive."""
+
+    CORRECTED = "corrections"
+    """Of a caster's link: it is connected."""
+
     DOWN = "down"
     ENDED = "ended"
 
 
 @dataclass(frozen=True, slots=True)
 class LinkState:
-    """The state of one link, since when, and in words why."""
+    """The state of one link, since when, and in words why. ``what`` is what was opened, as its source calls it."""
 
     status: LinkStatus = LinkStatus.CONNECTING
     since: float = 0.0
@@ -41,6 +48,7 @@ class LinkState:
     sentences: int = 0
     rejected: int = 0
     fixes: int = 0
+    what: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,11 +70,15 @@ class Snapshot:
     ``generation`` changes when time has jumped back (a seek): what was drawn of ``track`` and ``worked`` is void then.
     ``implement`` is the implement's own pose (east, north, heading) at its working point. ``origin_deg`` is the field
     frame's origin (latitude, longitude); ``field_rings`` the boundary and its exclusions, shape (N, 2) each, closed.
+    ``link`` is the receiver's; ``links_beside`` are the others by their name, as an attitude sensor's on its own port.
+    ``sky`` are the satellites in view.
     """
 
     sequence: int
     arrival: float
     link: LinkState
+    links_beside: Mapping[str, LinkState] = field(default_factory=dict)
+    sky: tuple[Satellite, ...] = ()
     fix: Fix | None = None
     fix_interval: float | None = None
     attitude: Attitude | None = None

@@ -4,6 +4,9 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 __all__ = [
+    "ATTITUDE",
+    "CORRECTIONS",
+    "RECEIVER",
     "Attitude",
     "Chunk",
     "Fix",
@@ -11,7 +14,13 @@ __all__ = [
     "NoFix",
     "Observation",
     "Rejected",
+    "Satellite",
 ]
+
+RECEIVER = "receiver"
+ATTITUDE = "attitude"
+CORRECTIONS = "corrections"
+"""The links of a session: the receiver, an attitude sensor on a port of its own, and the caster of corrections."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +29,7 @@ class Chunk:
 
     arrival: float
     data: bytes
-    link: str = "receiver"
+    link: str = RECEIVER
 
 
 class FixQuality(IntEnum):
@@ -89,7 +98,22 @@ class Attitude:
     roll_rate: float | None = None
     pitch_rate: float | None = None
     yaw_rate: float | None = None
-    link: str = "receiver"
+    link: str = RECEIVER
+
+
+@dataclass(frozen=True, slots=True)
+class Satellite:
+    """A satellite in view. ``system`` is the talker's two letters (GP, GL, GA, GB, GQ), ``number`` as the receiver says.
+
+    ``azimuth`` is clockwise from true north, ``elevation`` above the horizon; ``signal`` in dB-Hz, None when the
+    receiver does not track it.
+    """
+
+    system: str
+    number: int
+    elevation: float | None = None
+    azimuth: float | None = None
+    signal: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

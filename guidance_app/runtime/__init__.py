@@ -3,5 +3,6 @@
 from guidance_app.runtime.live import LiveSession
 from guidance_app.runtime.replay import ReplayControl, ReplaySession, ReplayState
 from guidance_app.runtime.session import Session
+from guidance_app.runtime.tap import RawStream, Tap
 
-__all__ = ["LiveSession", "ReplayControl", "ReplaySession", "ReplayState", "Session"]
+__all__ = ["LiveSession", "RawStream", "ReplayControl", "ReplaySession", "ReplayState", "Session", "Tap"]

@@ -11,6 +11,7 @@ from guidance_app.engine import Engine
 from guidance_app.estimation.filter import FilterSettings
 from guidance_app.model import Chunk, Command, Commanded, Event, Snapshot, SourceDown
 from guidance_app.runtime.session import Hearer, Publisher
+from guidance_app.runtime.tap import Tap
 from guidance_app.sources import Source
 
 __all__ = ["LiveSession"]
@@ -30,6 +31,7 @@ class LiveSession:
         self, job: Job, source: Source, filter_name: str | None = None, settings: FilterSettings | None = None
     ) -> None:
         self.job = job
+        self.tap = Tap()
         self._source = source
         self._engine = Engine(job, filter_name=filter_name, settings=settings)
         self._publisher = Publisher(self._engine.snapshot)
@@ -72,6 +74,7 @@ class LiveSession:
     def _read(self) -> None:
         try:
             for event in self._source.events(self._stop):
+                self.tap.hear(event)
                 self._events.put(event)
         except Exception as error:
             log.exception("the source failed")

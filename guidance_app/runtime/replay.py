@@ -18,6 +18,7 @@ from guidance_app.engine import Engine
 from guidance_app.estimation.filter import FilterSettings
 from guidance_app.model import Chunk, Command, Commanded, Event, SetLookAhead, Snapshot, SourceDown, SourceUp
 from guidance_app.runtime.session import Hearer, Publisher
+from guidance_app.runtime.tap import Tap
 from guidance_app.sources.file import FileLog
 from guidance_app.sources.pacing import Pacer, Seek
 
@@ -96,6 +97,7 @@ class ReplaySession:
         settings: FilterSettings | None = None,
     ) -> None:
         self.job = job
+        self.tap = Tap()
         self._log = source
         self._engine = Engine(job, filter_name=filter_name, settings=settings, notices=notices)
         self._engine.step(SourceUp(0.0, source.description))
@@ -145,6 +147,7 @@ class ReplaySession:
             due = self._pacer.next(self._publisher.least_interval if self._publisher.pending else None)
             match due:
                 case Chunk():
+                    self.tap.hear(due)
                     self._advance(due)
                 case Seek():
                     self._jump(due)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from guidance_app.documents import Job
 from guidance_app.model import Command, Snapshot
+from guidance_app.runtime.tap import Tap
 
 if TYPE_CHECKING:
     from guidance_app.runtime.replay import ReplayControl
@@ -36,6 +37,11 @@ class Session(Protocol):
     @property
     def replay(self) -> "ReplayControl | None":
         """Play, pause and seek; None when the source is live."""
+        ...
+
+    @property
+    def tap(self) -> Tap:
+        """A look at the raw stream."""
         ...
 
     def snapshot(self) -> Snapshot:

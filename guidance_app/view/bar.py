@@ -63,6 +63,8 @@ TROUBLES: Mapping[LinkStatus, BarState | None] = {
     LinkStatus.NO_SENTENCE: BarState.NO_SENTENCE,
     LinkStatus.NO_FIX: BarState.NO_FIX,
     LinkStatus.FIX: None,
+    LinkStatus.ATTITUDE: BarState.NO_FIX,
+    LinkStatus.CORRECTED: BarState.NO_FIX,
     LinkStatus.DOWN: BarState.DOWN,
     LinkStatus.ENDED: BarState.ENDED,
 }

@@ -218,6 +218,8 @@ _LINK_WORDS = {
     LinkStatus.NO_SENTENCE: ("Data, but no valid sentence", BAD),
     LinkStatus.NO_FIX: ("The receiver has no position", BAD),
     LinkStatus.FIX: ("The receiver gives positions", GOOD),
+    LinkStatus.ATTITUDE: ("The sensor gives its attitude", GOOD),
+    LinkStatus.CORRECTED: ("Corrections arrive", GOOD),
     LinkStatus.DOWN: ("The receiver is gone", BAD),
     LinkStatus.ENDED: ("The recording has ended", OFF),
 }

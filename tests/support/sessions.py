@@ -23,6 +23,7 @@ from guidance_app.model import (
     Snapshot,
     TurnGuide,
 )
+from guidance_app.runtime import Tap
 
 __all__ = ["HandSession", "a_job", "driven", "driving"]
 
@@ -87,6 +88,7 @@ class HandSession:
     def __init__(self, settings: Settings | None = None, first: Snapshot | None = None) -> None:
         self.job = a_job(settings)
         self.replay: Any = None
+        self.tap = Tap()
         self.commands: list[object] = []
         self._began = time.monotonic()
         self._newest = first or Snapshot(sequence=0, arrival=0.0, link=LinkState())
