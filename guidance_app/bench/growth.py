@@ -30,6 +30,7 @@ from guidance_app.console.screen import TICK_S, Screen
 from guidance_app.documents import Job
 from guidance_app.engine import Engine
 from guidance_app.model import Chunk, Command, Snapshot
+from guidance_app.runtime import Tap
 from guidance_app.view.bar import bar_json, bar_of
 
 __all__ = ["Growth", "Hour", "Joining", "Stretch", "add_parser", "measured", "rows_of", "run"]
@@ -51,11 +52,13 @@ class DrivenSession:
 
     def __init__(self, job: Job) -> None:
         self.job = job
+        self.tap = Tap()
         self._engine = Engine(job)
         self._now = 0.0
 
     def take(self, chunk: Chunk) -> None:
         """One epoch."""
+        self.tap.hear(chunk)
         self._engine.step(chunk)
         self._now = chunk.arrival
 

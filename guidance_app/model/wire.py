@@ -103,7 +103,7 @@ class Attitude:
 
 @dataclass(frozen=True, slots=True)
 class Satellite:
-    """A satellite in view. ``system`` is the talker's two letters (GP, GL, GA, GB, GQ), ``number`` as the receiver says.
+    """A satellite in view. ``system`` is the talker's two letters (GP, GL, GA, GB, GQ), ``number`` the receiver's own.
 
     ``azimuth`` is clockwise from true north, ``elevation`` above the horizon; ``signal`` in dB-Hz, None when the
     receiver does not track it.
