@@ -25,12 +25,13 @@ from guidance_app.bench.errors import BenchError
 from guidance_app.bench.rows import Row, add_json_option, shown
 from guidance_app.bench.streams import day_of_work
 from guidance_app.bench.wire import SceneClient
+from guidance_app.console.house import House
 from guidance_app.console.inner import InnerViser
 from guidance_app.console.screen import TICK_S, Screen
 from guidance_app.documents import Job
 from guidance_app.engine import Engine
 from guidance_app.model import Chunk, Command, Snapshot
-from guidance_app.runtime import Tap
+from guidance_app.runtime import SessionManager, Tap
 from guidance_app.view.bar import bar_json, bar_of
 
 __all__ = ["Growth", "Hour", "Joining", "Stretch", "add_parser", "measured", "rows_of", "run"]
@@ -170,7 +171,7 @@ def measured(hours: float, seconds: float) -> Growth:
     with contextlib.ExitStack() as opened:
         inner = InnerViser(label="Guidance")
         opened.callback(inner.close)
-        screen = Screen(inner.server, session)
+        screen = Screen(inner.server, House(SessionManager(session)))
         screen.attach()
         opened.callback(screen.close)
         chunks = day.chunks()

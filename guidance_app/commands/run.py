@@ -23,9 +23,13 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser = subparsers.add_parser(
         "run",
         help="drive: the console on a live receiver",
-        description=f"Opens the console on a live source. Sources: {known}",
+        description=f"Opens the console: on a live source, or where fields and machines are set up. Sources: {known}",
     )
-    parser.add_argument("--source", required=True, metavar="URI", help=f"where the bytes come from: {known}")
+    parser.add_argument(
+        "--source",
+        metavar="URI",
+        help=f"drive at once from here: {known} (without it the console opens where operations are started)",
+    )
     add_job_options(parser)
     add_data_option(parser)
     add_console_options(parser)
@@ -34,7 +38,9 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 def run(arguments: argparse.Namespace) -> int:
     """Drives until stopped."""
-    source = open_source(arguments.source)
     data = chosen_data_folder(arguments)
+    if arguments.source is None:
+        return serve(None, arguments, data, "nothing is driven yet: choose at the screen")
+    source = open_source(arguments.source)
     session = LiveSession(job_from_options(arguments), source, arguments.filter, filter_settings(arguments.settings))
     return serve(session, arguments, data, f"reading {source.description}")

@@ -9,26 +9,31 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from guidance_app.console.server import Console
-from guidance_app.runtime import LiveSession, ReplaySession
+from guidance_app.runtime import Session, SessionManager
+from guidance_app.store import Store
 
 __all__ = ["serve"]
 
 
-def serve(session: LiveSession | ReplaySession, arguments: argparse.Namespace, data: Path, opening: str) -> int:
-    """Opens the console on a session and stays until Ctrl-C or a termination signal. Raises ``ConsoleError``."""
-    console = Console(session, port=arguments.port, lan=arguments.lan)
+def serve(session: Session | None, arguments: argparse.Namespace, data: Path, opening: str) -> int:
+    """Opens the console and stays until Ctrl-C or a termination signal. Raises ``ConsoleError``.
+
+    It begins with ``session``, or without one where things are set up, and changes to what the driver wants later.
+    """
+    manager = SessionManager(session)
+    console = Console(manager, port=arguments.port, lan=arguments.lan, store=Store(data))
     print(opening)
     print(f"data folder: {data}")
     console.start()
     try:
-        session.start()
+        manager.start()
         print(console.invitation(colour=sys.stdout.isatty()))
         print("Stop it with Ctrl-C.", flush=True)
         with _until_stopped() as stopped:
             stopped.wait()
     finally:
         console.close()
-        session.close()
+        manager.close()
     return 0
 
 

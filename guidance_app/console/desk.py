@@ -2,17 +2,27 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import ClassVar, Protocol
 
 import viser
 
+from guidance_app.console.house import House
+from guidance_app.console.sketch import Sketch
 from guidance_app.documents import Units
 from guidance_app.language import Words
 from guidance_app.model import Command, Snapshot
 from guidance_app.runtime import ReplayControl, ReplayState
 from guidance_app.view.camera import ViewMode
 
-__all__ = ["Desk", "Hands", "Panel"]
+__all__ = ["Desk", "Hands", "Panel", "Place"]
+
+
+class Place(StrEnum):
+    """Where one client is: at the wheel with the driving panels, or in the yard where things are set up."""
+
+    DRIVE = "drive"
+    SETUP = "setup"
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +39,12 @@ class Desk:
 
 @dataclass(frozen=True, slots=True)
 class Hands:
-    """What panels may do. Each returns at once and may be called from any thread."""
+    """What panels may do. Each returns at once and may be called from any thread.
+
+    ``later`` does long work on another thread; what it raises with a sentence is shown to this client. ``tell`` shows
+    words for a few seconds, ``bad`` ones until they are closed. ``go`` changes between driving and setting up;
+    ``renew`` makes the panels of all clients anew (another language, other units).
+    """
 
     post: Callable[[Command], None]
     look: Callable[[ViewMode], None]
@@ -39,6 +54,12 @@ class Hands:
     replay: ReplayControl | None
     words: Words
     """In the driver's language; when it changes, the panels are made anew."""
+    house: House
+    sketch: Sketch
+    later: Callable[[Callable[[], None]], None]
+    tell: Callable[..., None]
+    go: Callable[[Place], None]
+    renew: Callable[[], None]
 
 
 class Panel(Protocol):

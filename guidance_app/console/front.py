@@ -1,4 +1,4 @@
-"""The web server in front of viser: the page, our files beside it, the light bar's socket, viser's socket, downloads.
+"""The web server in front of viser: the page, our files, the light bar's socket, viser's socket, files to and fro.
 
 The page is viser's own, with our head put before ``</head>`` when the console starts; viser's package stays as it is.
 All files are small and held in memory, so no request ever touches a path on disk. viser's page makes sockets to, and
@@ -10,10 +10,10 @@ import contextlib
 import gzip
 import hashlib
 import mimetypes
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import AsyncIterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from urllib.parse import quote
+from urllib.parse import quote, unquote
 
 import viser
 from starlette.applications import Starlette
@@ -22,14 +22,13 @@ from starlette.responses import PlainTextResponse, RedirectResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
+from guidance_app.console.files import LARGEST_UPLOAD, LONGEST_NAME, Download, Files, Taker
 from guidance_app.console.live import LiveHub
 from guidance_app.console.proxy import pass_through
 
 __all__ = [
     "ICON",
     "Asset",
-    "Download",
-    "Downloads",
     "front_app",
     "own_files",
     "patched_page",
@@ -45,6 +44,7 @@ HEAD = (
     '<link rel="stylesheet" href="/static/console.css">'
     '<script src="/static/page.js"></script>'
     '<script src="/static/touch.js"></script>'
+    '<script src="/static/upload.js"></script>'
     '<script type="module" src="/static/lightbar.js"></script>'
 )
 ICON = "icon-192.png"
@@ -79,19 +79,6 @@ class Asset:
         return Response(self.body, headers=headers, media_type=self.media_type)
 
 
-@dataclass(frozen=True, slots=True)
-class Download:
-    """A file that leaves by HTTP."""
-
-    name: str
-    media_type: str
-    data: bytes
-
-
-Downloads = Mapping[str, Callable[[], Download | None]]
-"""By the last part of its address, what makes the file when it is asked for; None when there is nothing to give."""
-
-
 def static_folder() -> Path:
     """Our page's files: inside the installed package, or beside it in a checkout."""
     package = Path(__file__).parent.parent
@@ -119,7 +106,7 @@ def _media_type(path: Path) -> str:
 
 
 def front_app(
-    files: Mapping[str, Asset], hub: LiveHub, inner_uri: str, inner_headers: dict[str, str], downloads: Downloads
+    files: Mapping[str, Asset], hub: LiveHub, inner_uri: str, inner_headers: dict[str, str], exchanged: Files
 ) -> Starlette:
     """The whole front, without access control: ``guard.Guard`` goes around it."""
     page_file = patched_page()
@@ -137,9 +124,15 @@ def front_app(
         return files[ICON].response(request)
 
     async def download(request: Request) -> Response:
-        make = downloads.get(request.path_params["name"])
+        make = exchanged.maker(request.path_params["name"])
         made = None if make is None else await asyncio.to_thread(make)
         return PlainTextResponse("nothing to download", 404) if made is None else _attached(made)
+
+    async def upload(request: Request) -> Response:
+        take = exchanged.taker(request.path_params["token"])
+        if take is None:
+            return PlainTextResponse("No file is awaited here any more: open the form again.", 404)
+        return await _taken(request, take)
 
     async def viser_socket(websocket: WebSocket) -> None:
         await pass_through(websocket, inner_uri, inner_headers)
@@ -157,6 +150,7 @@ def front_app(
         Route("/static/{name}", own_file),
         Route("/favicon.ico", own_icon),
         Route("/download/{name}", download),
+        Route("/upload/{token}", upload, methods=["POST"]),
         WebSocketRoute("/live", hub.serve),
         WebSocketRoute("/", viser_socket),
     ]
@@ -169,3 +163,16 @@ def _attached(made: Download) -> Response:
         "Cache-Control": "no-store",
     }
     return Response(made.data, headers=headers, media_type=made.media_type)
+
+
+async def _taken(request: Request, take: Taker) -> Response:
+    """The posted file handed to who awaits it; one that is too large is not read to its end."""
+    name = unquote(request.headers.get("x-file-name", ""))[:LONGEST_NAME] or "file"
+    body = bytearray()
+    async for part in request.stream():
+        body += part
+        if len(body) > LARGEST_UPLOAD:
+            words = f"{name} is larger than {LARGEST_UPLOAD // 2**20} MB, the most that is taken; nothing was stored."
+            return PlainTextResponse(words, 413, {"Connection": "close"})
+    await asyncio.to_thread(take, name, bytes(body))
+    return PlainTextResponse("")

@@ -22,6 +22,7 @@ from guidance_app.view.camera import (
     CameraHome,
     Extent,
     ViewMode,
+    WorldPose,
     camera_home,
     eased_heading,
     world_pose,
@@ -74,6 +75,7 @@ class ClientScene:
         self._home_key: object = None
         self._shown_heading: float | None = None
         self._last_now: float | None = None
+        self._lies = WorldPose(0.0, 0.0, 0.0)
         self._drawn: dict[str, object] = {}
         scene = client.scene
         self._world = scene.add_frame(WORLD, show_axes=False)
@@ -90,6 +92,11 @@ class ClientScene:
         self._open_worked: viser.MeshHandle | None = None
         self._open_track: viser.LineSegmentsHandle | None = None
         client.camera.fov = FIELD_OF_VIEW
+
+    @property
+    def world(self) -> WorldPose:
+        """How this client's map lies under its camera now."""
+        return self._lies
 
     @property
     def mode(self) -> ViewMode:
@@ -177,7 +184,7 @@ class ClientScene:
             self._shown_heading = heading
             middle = (shown.east, shown.north) if self._mode.follows else middle
         self._last_now = now
-        world = world_pose(self._mode, middle, heading)
+        world = self._lies = world_pose(self._mode, middle, heading)
         self._world.wxyz = _wxyz(world.yaw)
         self._world.position = (world.x, world.y, 0.0)
 

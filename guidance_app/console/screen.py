@@ -9,18 +9,18 @@ client is drawn, the others are drawn on.
 import logging
 import threading
 import time
-from collections.abc import Callable
 
 import viser
 
 from guidance_app.console.clock import shown_instant
-from guidance_app.console.desk import Desk, Hands, Panel
-from guidance_app.console.ground import Ground
+from guidance_app.console.desk import Desk, Hands, Panel, Place
+from guidance_app.console.ground import WORLD, Ground
+from guidance_app.console.house import House
 from guidance_app.console.moving import ClientScene, Models
-from guidance_app.console.panels import PANELS
+from guidance_app.console.panels import HEAD, PANELS, SETUP_PANELS
+from guidance_app.console.sketch import Sketch
 from guidance_app.language import words_for
 from guidance_app.model import Snapshot
-from guidance_app.runtime import Session
 from guidance_app.view.camera import ViewMode
 from guidance_app.view.colours import palette_of
 
@@ -33,22 +33,33 @@ PANELS_S = 0.25
 """Words change four times a second: faster, nobody reads them."""
 
 STOP_S = 5.0
+TOLD_S = 6.0
+"""So long good news stays."""
 PANEL_WIDTH = 460.0
 BRAND = (20, 140, 60)
 
 
 class _Client:
-    """One browser: its scene, its panels, and the wishes of its fingers."""
+    """One browser: its scene, its panels, where it is, and the wishes of its fingers."""
 
-    def __init__(self, handle: viser.ClientHandle, scene: ClientScene, panels_of: Callable[["_Client"], None]) -> None:
+    def __init__(self, handle: viser.ClientHandle, scene: ClientScene, place: Place) -> None:
         self.handle = handle
         self.scene = scene
+        self.sketch = Sketch(handle, lambda: self.scene.world, WORLD)
         self.panels: list[Panel] = []
+        self.place: Place | None = None
+        self.wished_place = place
         self.wished_view: ViewMode | None = None
         self.wished_back = False
         self.panels_due = 0.0
         self.failed = False
-        panels_of(self)
+
+    def again(self, scene: ClientScene) -> None:
+        """Another drive: the scene is new, and at the wheel the panels too."""
+        self.scene = scene
+        self.sketch.forget()
+        if self.place is Place.DRIVE:
+            self.place = None
 
     def take_wishes(self) -> None:
         """Does what fingers have asked for since the last redraw."""
@@ -61,13 +72,15 @@ class _Client:
 
 
 class Screen:
-    """Scene and panels of one session on viser's server."""
+    """Scene and panels on viser's server, of whatever the house drives."""
 
-    def __init__(self, server: viser.ViserServer, session: Session) -> None:
+    def __init__(self, server: viser.ViserServer, house: House) -> None:
         self._server = server
-        self._session = session
-        self._job = session.job
-        self._night = session.job.settings.night
+        self._house = house
+        self._session = house.manager
+        self._episode = self._session.episode
+        self._job = self._session.job
+        self._night = self._job.settings.night
         self._wished_night = self._night
         self._models = Models.of(self._job)
         self._ground = Ground(server, self._job, palette_of(night=self._night))
@@ -130,6 +143,7 @@ class Screen:
 
     def tick(self) -> None:
         """One redraw of everything."""
+        self._follow_the_house()
         snapshot = self._session.snapshot()
         now = shown_instant(self._session, snapshot)
         self._welcome()
@@ -154,8 +168,24 @@ class Screen:
             log.error("client %d could not be drawn; the next redraw tries again", number, exc_info=error)
         client.failed = True
 
+    def _follow_the_house(self) -> None:
+        """When something else is driven, shared ground and every client's scene are made anew."""
+        if self._session.episode == self._episode:
+            return
+        self._episode = self._session.episode
+        self._job = self._session.job
+        self._models = Models.of(self._job)
+        self._server.scene.reset()
+        palette = palette_of(night=self._night)
+        self._ground = Ground(self._server, self._job, palette)
+        for client in list(self._clients.values()):
+            client.handle.scene.reset()
+            client.again(ClientScene(client.handle, self._job, self._models, palette))
+
     def _draw(self, client: _Client, snapshot: Snapshot, now: float) -> None:
         client.take_wishes()
+        if client.wished_place is not client.place:
+            self._make_panels(client, client.wished_place)
         client.scene.draw(snapshot, now, self._ground)
         moment = time.monotonic()
         if moment >= client.panels_due:
@@ -170,7 +200,8 @@ class Screen:
         for handle in arrived:
             try:
                 scene = ClientScene(handle, self._job, self._models, palette_of(night=self._night))
-                self._clients[handle.client_id] = _Client(handle, scene, self._make_panels)
+                place = Place.SETUP if self._session.idle else Place.DRIVE
+                self._clients[handle.client_id] = _Client(handle, scene, place)
             except Exception:
                 if handle.client_id in self._server.get_clients():
                     log.exception("client %d could not be welcomed", handle.client_id)
@@ -215,9 +246,16 @@ class Screen:
         def bring_back() -> None:
             client.wished_back = True
 
+        def go(place: Place) -> None:
+            client.wished_place = place
+
         def desk() -> Desk:
             snapshot = self._session.snapshot()
             return self._desk(client, snapshot, shown_instant(self._session, snapshot))
+
+        def tell(title: str, body: str = "", *, bad: bool = False) -> None:
+            seconds = None if bad else TOLD_S
+            client.handle.add_notification(title, body, auto_close_seconds=seconds, color="red" if bad else "green")
 
         return Hands(
             post=self._session.post,
@@ -226,21 +264,34 @@ class Screen:
             set_night=self._wish_night,
             desk=desk,
             replay=self._session.replay,
-            words=words_for(self._job.settings.language),
+            words=words_for(self._house.settings().language),
+            house=self._house,
+            sketch=client.sketch,
+            later=lambda work: self._house.later(work, lambda sentence: tell("Not done", sentence, bad=True)),
+            tell=tell,
+            go=go,
+            renew=self._renew,
         )
 
-    def _make_panels(self, client: _Client) -> None:
+    def _renew(self) -> None:
+        for client in list(self._clients.values()):
+            client.place = None
+
+    def _make_panels(self, client: _Client, place: Place) -> None:
         """The head in viser's main panel; the tabs in one of their own below it, which a phone shows folded."""
+        client.place = place
+        client.panels = []
+        client.sketch.clear()
         gui, hands = client.handle.gui, self._hands(client)
-        gui.set_panel_label(self._title())
+        gui.reset()
+        gui.set_panel_label(self._title() if place is Place.DRIVE else "Setup")
         main = gui.main_panel
         main.dock_right()
         main.set_width(PANEL_WIDTH)
+        client.panels.append(HEAD[place](gui, hands))
         tabs = gui.add_panel()
-        for name, panel in PANELS.items():
-            if name == "summary":
-                client.panels.append(panel(gui, hands))
-            elif name != "replay" or hands.replay is not None:
+        for name, panel in (PANELS if place is Place.DRIVE else SETUP_PANELS).items():
+            if name != "replay" or hands.replay is not None:
                 with tabs.add_tab(panel.title):
                     client.panels.append(panel(gui, hands))
         tabs.dock_below(main)

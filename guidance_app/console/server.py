@@ -17,14 +17,17 @@ from guidance_app.console.address import (
     lan_addresses,
     own_names,
 )
-from guidance_app.console.front import Download, front_app, own_files, static_folder
+from guidance_app.console.files import Download
+from guidance_app.console.front import front_app, own_files, static_folder
 from guidance_app.console.guard import Guard
+from guidance_app.console.house import House
 from guidance_app.console.inner import InnerViser
 from guidance_app.console.live import LiveHub
 from guidance_app.console.qr import terminal_qr
 from guidance_app.console.screen import Screen
 from guidance_app.console.web_server import WebServer
-from guidance_app.runtime import Session
+from guidance_app.runtime import Session, SessionManager
+from guidance_app.store import Store
 
 __all__ = ["Console", "ConsoleError", "Download", "Picture", "ScreenFactory"]
 
@@ -44,18 +47,18 @@ class Picture(Protocol):
         ...
 
 
-ScreenFactory = Callable[[viser.ViserServer, Session], Picture]
+ScreenFactory = Callable[[viser.ViserServer, House], Picture]
 
 
 class Console:
-    """The console of one session in the browser.
+    """The console in the browser, around one session or a manager that changes between several.
 
     Reached from this machine alone, or with ``lan`` from the network behind a PIN (six random digits unless ``pin``
-    names them). ``screen_factory`` makes scene and panels from viser's server and the session; ``host`` chooses one
-    interface instead of all. ``downloads`` may be filled at any time: what is in it leaves under ``/download/NAME``.
+    names them). ``screen_factory`` makes scene and panels from viser's server and the house; ``host`` chooses one
+    interface instead of all. ``store`` holds the documents that are set up here; without one only the drive is shown.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - a call names each
         self,
         session: Session,
         *,
@@ -64,11 +67,14 @@ class Console:
         lan: bool = False,
         pin: str | None = None,
         screen_factory: ScreenFactory = Screen,
+        store: Store | None = None,
     ) -> None:
         if host is not None and not lan and not is_loopback(host):
             msg = f"{host} is reached from the network; add --lan, so that a PIN stands before it."
             raise ConsoleError(msg)
-        self._session = session
+        manager = session if isinstance(session, SessionManager) else SessionManager(session)
+        self.house = House(manager, store)
+        """What the console can do beside the drive."""
         self._host = host or (ALL_INTERFACES if lan else LOOPBACK)
         self._wanted_port = port
         self._lan = lan
@@ -76,9 +82,7 @@ class Console:
         self._closing = contextlib.ExitStack()
         self.pin = (pin or new_pin()) if lan else None
         """What a browser must show; None without ``lan``."""
-        self.downloads: dict[str, Callable[[], Download | None]] = {}
-        """What makes each file that leaves by HTTP; called off the front's loop."""
-        self.hub = LiveHub(session)
+        self.hub = LiveHub(manager)
         """The light bar's feed, with the round trips it has measured."""
         self.addresses: tuple[str, ...] = ()
         """Where browsers find the console, the best first; empty until it has started."""
@@ -89,8 +93,9 @@ class Console:
             listener = opened.enter_context(bind(self._host, self._wanted_port))
             port = listener.getsockname()[1]
             inner = InnerViser(label="Guidance")
+            opened.callback(self.house.close)
             opened.callback(inner.close)
-            screen = self._screen_factory(inner.server, self._session)
+            screen = self._screen_factory(inner.server, self.house)
             screen.start()
             opened.callback(screen.close)
             opened.callback(WebServer(self._application(inner, port), listener).close)
@@ -112,7 +117,7 @@ class Console:
 
     def _application(self, inner: InnerViser, port: int) -> Guard:
         files = own_files(static_folder())
-        app = front_app(files, self.hub, inner.uri, inner.headers, self.downloads)
+        app = front_app(files, self.hub, inner.uri, inner.headers, self.house.files)
         names = Names(own_names() | {self._host, LOOPBACK, "::1"}, any_number=self._lan)
         return Guard(app, Door(self.pin), files, names, cookie=f"guidance_{port}")
 

@@ -1,8 +1,18 @@
 """Threads, queue and clock around one engine: the live session and the replay under a person's hands."""
 
 from guidance_app.runtime.live import LiveSession
+from guidance_app.runtime.manager import SessionManager
 from guidance_app.runtime.replay import ReplayControl, ReplaySession, ReplayState
 from guidance_app.runtime.session import Session
 from guidance_app.runtime.tap import RawStream, Tap
 
-__all__ = ["LiveSession", "RawStream", "ReplayControl", "ReplaySession", "ReplayState", "Session", "Tap"]
+__all__ = [
+    "LiveSession",
+    "RawStream",
+    "ReplayControl",
+    "ReplaySession",
+    "ReplayState",
+    "Session",
+    "SessionManager",
+    "Tap",
+]

@@ -11,7 +11,8 @@ from websockets.typing import Origin
 
 from guidance_app.console.access import SESSIONS, Admitted, Door, Names, Refused, Wait, foreign, new_pin
 from guidance_app.console.address import ConsoleError
-from guidance_app.console.server import Console, Download
+from guidance_app.console.files import Download
+from guidance_app.console.server import Console
 
 PIN = "480215"
 WRONG = "000000"
@@ -173,7 +174,7 @@ EVERYTHING = [
 
 
 def with_a_secret(console: Console) -> Console:
-    console.downloads["log"] = lambda: Download("log.txt", "text/plain", b"secret")
+    console.house.files.offer(lambda: Download("log.txt", "text/plain", b"secret"), "log")
     return console
 
 

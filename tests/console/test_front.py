@@ -17,8 +17,9 @@ from support.consoles import (
 from support.sessions import HandSession
 
 from guidance_app.console.address import bind, lan_addresses
+from guidance_app.console.files import Download
 from guidance_app.console.front import HEAD, patched_page
-from guidance_app.console.server import Console, ConsoleError, Download
+from guidance_app.console.server import Console, ConsoleError
 
 PATIENCE_S = 10.0
 MEGABYTE = 1_000_000
@@ -102,8 +103,8 @@ def test_a_download_is_made_when_it_is_asked_for(start_console: StartConsole) ->
 
     with client_of(console) as client:
         assert client.get("/download/field").status_code == 404
-        console.downloads["field"] = make
-        console.downloads["nothing"] = lambda: None
+        console.house.files.offer(make, "field")
+        console.house.files.offer(lambda: None, "nothing")
         answer = client.get("/download/field")
         assert client.get("/download/nothing").status_code == 404
     assert answer.content == b"{}"

@@ -12,8 +12,10 @@ from support.snapshots import SetSession, field_job, field_snapshot, strip, trai
 from support.stage import Stage, running_viser, visible
 from support.viser_client import ViserClient, viser_client
 
+from guidance_app.console.house import House
 from guidance_app.console.screen import Screen
 from guidance_app.model import LinkState, Pose, Snapshot, TurnGuide, WorkMode
+from guidance_app.runtime import SessionManager
 
 CENTIMETRE = 1e-2
 TICK_S = 0.04
@@ -127,7 +129,7 @@ def test_a_client_that_left_is_forgotten_and_the_others_go_on(stage: Stage) -> N
 def test_the_loop_runs_by_itself_and_ends(server: viser.ViserServer) -> None:
     session = HandSession(first=field_snapshot())
     session.job = field_job()
-    screen = Screen(server, session)
+    screen = Screen(server, House(SessionManager(session)))
     screen.start()
     with viser_client(server) as client:
         client.until(lambda: "/w/numbers" in client.nodes)

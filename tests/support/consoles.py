@@ -13,8 +13,8 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.sync.connection import Connection
 from websockets.typing import Origin, Subprotocol
 
+from guidance_app.console.house import House
 from guidance_app.console.server import Console
-from guidance_app.runtime import Session
 from support.sessions import HandSession
 
 __all__ = [
@@ -40,10 +40,10 @@ class PlainScreen:
 
     newest: "PlainScreen"
 
-    def __init__(self, server: viser.ViserServer, session: Session) -> None:
+    def __init__(self, server: viser.ViserServer, house: House) -> None:
         PlainScreen.newest = self
         self.server = server
-        self.session = session
+        self.session = house.manager
         self.came = threading.Event()
         self.closed = False
         self.typed = threading.Event()

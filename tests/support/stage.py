@@ -7,7 +7,9 @@ from typing import Any
 import pytest
 import viser
 
+from guidance_app.console.house import House
 from guidance_app.console.screen import Screen
+from guidance_app.runtime import SessionManager
 from support.viser_client import ViserClient, viser_client
 
 __all__ = ["Stage", "running_viser", "visible"]
@@ -22,7 +24,7 @@ class Stage:
     def __init__(self, server: viser.ViserServer, session: Any) -> None:
         self.server = server
         self.session = session
-        self.screen = Screen(server, session)
+        self.screen = Screen(server, House(SessionManager(session)))
         self.screen.attach()
 
     @contextmanager

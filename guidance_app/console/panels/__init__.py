@@ -1,19 +1,30 @@
-"""The panels of the console, one a file. ``PANELS`` is their table; a panel that is missing here is not shown."""
+"""The panels of the console, one a file. The tables say which are shown where; a panel in none is not shown."""
 
-from guidance_app.console.desk import Panel
+from guidance_app.console.desk import Panel, Place
 from guidance_app.console.panels.info import Info
+from guidance_app.console.panels.menu import Menu
 from guidance_app.console.panels.replay import Replay
+from guidance_app.console.panels.start import Start
 from guidance_app.console.panels.summary import Summary
 from guidance_app.console.panels.views import Views
 from guidance_app.console.panels.work import Work
+from guidance_app.console.panels.yard import Yard
 
-__all__ = ["PANELS"]
+__all__ = ["HEAD", "PANELS", "SETUP_PANELS"]
+
+HEAD: dict[Place, type[Panel]] = {Place.DRIVE: Summary, Place.SETUP: Yard}
+"""What is always in sight, above the tabs."""
 
 PANELS: dict[str, type[Panel]] = {
-    "summary": Summary,
     "work": Work,
     "views": Views,
     "replay": Replay,
     "info": Info,
+    "menu": Menu,
 }
-"""By the name of their file, in the order of the tabs; the summary is the head above them."""
+"""While driving: by the name of their file, in the order of the tabs."""
+
+SETUP_PANELS: dict[str, type[Panel]] = {
+    "start": Start,
+}
+"""While setting up, in the order of the tabs."""

@@ -1,0 +1,82 @@
+"""Files that come and go by HTTP: what a panel awaits and offers, each under a name that cannot be guessed.
+
+viser's own upload has no limit before the whole file is in memory, and its download none after; here the size is
+checked while bytes come in, and nothing of a file that is too large is kept.
+"""
+
+import html
+import secrets
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+
+__all__ = ["LARGEST_UPLOAD", "LONGEST_NAME", "Download", "Files", "Taker", "link_html", "upload_html"]
+
+LARGEST_UPLOAD = 64 * 1024 * 1024
+"""Bytes; the largest real field archive has a few hundred thousand."""
+LONGEST_NAME = 200
+
+Taker = Callable[[str, bytes], None]
+"""Takes the file's name and content, on a thread of its own; what it raises becomes a sentence for the person."""
+
+
+@dataclass(frozen=True, slots=True)
+class Download:
+    """A file that leaves by HTTP."""
+
+    name: str
+    media_type: str
+    data: bytes
+
+
+Maker = Callable[[], Download | None]
+
+
+class Files:
+    """Which files are awaited and offered now. Its methods may be called from any thread."""
+
+    def __init__(self) -> None:
+        self._makers: dict[str, Maker] = {}
+        self._takers: dict[str, Taker] = {}
+        self._lock = threading.Lock()
+
+    def offer(self, make: Maker, name: str | None = None) -> str:
+        """The address under which ``make``'s file leaves, made anew for each request; ``name`` instead of a token."""
+        token = name or secrets.token_urlsafe(12)
+        with self._lock:
+            self._makers[token] = make
+        return f"/download/{token}"
+
+    def maker(self, token: str) -> Maker | None:
+        """Who makes the file of this token."""
+        return self._makers.get(token)
+
+    def awaits(self, take: Taker) -> str:
+        """The token under which a file may come in, until ``forget``."""
+        token = secrets.token_urlsafe(12)
+        with self._lock:
+            self._takers[token] = take
+        return token
+
+    def taker(self, token: str) -> Taker | None:
+        """Who awaits a file under this token."""
+        return self._takers.get(token)
+
+    def forget(self, token: str) -> None:
+        """Nothing is awaited or offered under this token any more."""
+        with self._lock:
+            self._takers.pop(token, None)
+            self._makers.pop(token.removeprefix("/download/"), None)
+
+
+def link_html(address: str, words: str) -> str:
+    """A link that looks like a button and stores the file."""
+    return f'<a class="g-file" href="{html.escape(address)}" download>{html.escape(words)}</a>'
+
+
+def upload_html(token: str, words: str, accept: str = "") -> str:
+    """A button that asks for a file and sends it; ``accept`` as in HTML (".kml,.zip")."""
+    return (
+        f'<label class="g-file">{html.escape(words)}'
+        f'<input type="file" hidden data-upload="{html.escape(token)}" accept="{html.escape(accept)}"></label>'
+    )

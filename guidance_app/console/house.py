@@ -1,0 +1,106 @@
+"""The house around the drive: the documents, what is driven or replayed, files, and long work beside the picture.
+
+One for the whole console. Panels reach it through their hands; nothing here draws.
+"""
+
+import logging
+import threading
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
+from guidance_app.boundary import BoundaryError
+from guidance_app.console.files import Files
+from guidance_app.documents import FieldDocument, Job, Method, Operation, Settings
+from guidance_app.exchange import ExchangeError
+from guidance_app.guidance.planning import PlanError
+from guidance_app.runtime import LiveSession, Session, SessionManager
+from guidance_app.sources import SourceError, open_source
+from guidance_app.store import Store, StoreError
+
+__all__ = ["SENTENCES", "House"]
+
+log = logging.getLogger(__name__)
+
+SENTENCES: tuple[type[Exception], ...] = (StoreError, SourceError, ExchangeError, BoundaryError, PlanError)
+"""Errors whose message is a sentence for the person at the screen."""
+WORKERS = 4
+
+
+class House:
+    """What the console can do beside the drive. Its methods may be called from any thread; some take seconds."""
+
+    def __init__(self, manager: SessionManager, store: Store | None = None) -> None:
+        self.manager = manager
+        self.store = store
+        self.files = Files()
+        self._workers = ThreadPoolExecutor(WORKERS, thread_name_prefix="house")
+        self._changing = threading.Lock()
+
+    @property
+    def driving(self) -> bool:
+        """True while a receiver is read or a recording played."""
+        return not self.manager.idle
+
+    def settings(self) -> Settings:
+        """The driver's settings as they are stored, else those of the drive."""
+        stored = None if self.store is None else self.store.settings()
+        return self.manager.job.settings if stored is None else stored.document
+
+    # --- what is driven --------------------------------------------------------------------------------------------
+
+    def drive(self, job: Job) -> None:
+        """Ends what is driven and drives ``job`` from its receiver's source. Raises ``SourceError``."""
+        self.take(LiveSession(job, open_source(job.receiver.source)))
+
+    def take(self, session: Session) -> None:
+        """Ends what is driven and goes on with this session."""
+        with self._changing:
+            self.manager.take(session)
+
+    def end(self) -> None:
+        """Ends what is driven; the field stays on the screen."""
+        with self._changing:
+            if not self.manager.idle:
+                self.manager.rest(_shown_only(self.manager.job, self.manager.job.field))
+
+    def show_field(self, field: FieldDocument | None) -> bool:
+        """Shows a field on the map, None for none; False while something is driven, which goes before."""
+        with self._changing:
+            if not self.manager.idle:
+                return False
+            self.manager.rest(_shown_only(self.manager.job, field))
+            return True
+
+    # --- long work -------------------------------------------------------------------------------------------------
+
+    def later(self, work: Callable[[], None], failed: Callable[[str], None]) -> None:
+        """Does ``work`` on another thread; ``failed`` hears the sentence when it cannot be done."""
+
+        def run() -> None:
+            try:
+                work()
+            except SENTENCES as error:
+                failed(str(error))
+            except Exception as error:
+                log.exception("work asked for at the screen failed")
+                failed(f"This failed inside the program ({type(error).__name__}: {error}). Nothing was changed.")
+
+        self._workers.submit(run)
+
+    def close(self) -> None:
+        """Waits for nothing that has not begun."""
+        self._workers.shutdown(wait=False, cancel_futures=True)
+
+
+def _shown_only(job: Job, field: FieldDocument | None) -> Job:
+    """The same documents with a field that is only looked at: no plan is made for it."""
+    operation = None
+    if field is not None:
+        operation = Operation(
+            name="Look",
+            field=field.name,
+            tractor=job.tractor.name,
+            implement=job.implement.name,
+            method=Method.LINE,
+        )
+    return job.model_copy(update={"field": field, "operation": operation})

@@ -1,0 +1,34 @@
+"""The head of the panels while things are set up: what is driven meanwhile, and the way back to it."""
+
+from typing import ClassVar
+
+import viser
+
+from guidance_app.console.desk import Desk, Hands, Place
+from guidance_app.console.widgets import STYLE, Shown, notice_html
+
+__all__ = ["Yard"]
+
+
+class Yard:
+    """Says what goes on behind the forms."""
+
+    title: ClassVar[str] = "Setup"
+
+    def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
+        gui.add_html(STYLE)
+        self._hands = hands
+        self._problems = Shown(gui)
+        self._back = gui.add_button("Back to the drive", color="green")
+        store = hands.house.store
+        problems = () if store is None else tuple(one.sentence for one in store.problems)
+        self._problems.show(notice_html(problems))
+
+        @self._back.on_click
+        async def _(_: object) -> None:
+            hands.go(Place.DRIVE)
+
+    def show(self, desk: Desk) -> None:
+        """Brings the button up to what is driven."""
+        self._back.visible = self._hands.house.driving
+        self._back.label = "Back to the replay" if desk.replay is not None else "Back to the drive"
