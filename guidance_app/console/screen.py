@@ -278,7 +278,11 @@ class Screen:
             client.place = None
 
     def _make_panels(self, client: _Client, place: Place) -> None:
-        """The head in viser's main panel; the tabs in one of their own below it, which a phone shows folded."""
+        """The head in viser's main panel, then the tabs.
+
+        At the wheel they have a panel of their own below it, which a phone shows folded; in the setup they are part
+        of the main panel.
+        """
         client.place = place
         client.panels = []
         client.sketch.clear()
@@ -289,12 +293,13 @@ class Screen:
         main.dock_right()
         main.set_width(PANEL_WIDTH)
         client.panels.append(HEAD[place](gui, hands))
-        tabs = gui.add_panel()
+        tabs = gui.add_panel() if place is Place.DRIVE else gui.add_tab_group()
         for name, panel in (PANELS if place is Place.DRIVE else SETUP_PANELS).items():
             if name != "replay" or hands.replay is not None:
                 with tabs.add_tab(panel.title):
                     client.panels.append(panel(gui, hands))
-        tabs.dock_below(main)
+        if isinstance(tabs, viser.PanelHandle):
+            tabs.dock_below(main)
 
     def _title(self) -> str:
         field = self._job.field.name if self._job.field is not None else "No field"

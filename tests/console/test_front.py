@@ -17,7 +17,7 @@ from support.consoles import (
 from support.sessions import HandSession
 
 from guidance_app.console.address import bind, lan_addresses
-from guidance_app.console.files import Download
+from guidance_app.console.files import LARGEST_UPLOAD, Download
 from guidance_app.console.front import HEAD, patched_page
 from guidance_app.console.server import Console, ConsoleError
 
@@ -189,3 +189,40 @@ def test_on_the_network_the_console_answers_at_its_addresses(start_console: Star
 
 def test_viser_is_the_version_that_the_page_is_made_for() -> None:
     assert viser.__version__.startswith("1.1.")
+
+
+# --- uploads -------------------------------------------------------------------------------------------------------
+
+
+def test_an_awaited_file_comes_in_whole_with_its_name(start_console: StartConsole) -> None:
+    console = start_console()
+    came: list[tuple[str, bytes]] = []
+    token = console.house.files.awaits(lambda name, content: came.append((name, content)))
+    with client_of(console) as client:
+        answer = client.post(f"/upload/{token}", content=b"\x00ring", headers={"X-File-Name": "Gro%C3%9Fe%20Wiese.kml"})
+    assert answer.status_code == 200
+    assert came == [("Große Wiese.kml", b"\x00ring")]
+
+
+def test_a_file_that_nobody_awaits_is_refused(start_console: StartConsole) -> None:
+    console = start_console()
+    token = console.house.files.awaits(lambda name, content: None)
+    console.house.files.forget(token)
+    with client_of(console) as client:
+        assert client.post(f"/upload/{token}", content=b"ring").status_code == 404
+
+
+def test_a_file_that_is_too_large_is_refused_and_nothing_is_kept(start_console: StartConsole) -> None:
+    console = start_console()
+    came: list[str] = []
+    token = console.house.files.awaits(lambda name, content: came.append(name))
+
+    def pieces() -> Iterator[bytes]:
+        for _ in range(LARGEST_UPLOAD // 2**20 + 2):
+            yield bytes(2**20)
+
+    with client_of(console) as client:
+        answer = client.post(f"/upload/{token}", content=pieces(), headers={"X-File-Name": "big.zip"})
+    assert answer.status_code == 413
+    assert "larger than 64 MB" in answer.text
+    assert came == []
