@@ -39,9 +39,12 @@ class Menu:
     def _pressed(self) -> None:
         """The first press asks, the second ends."""
         if self._sure:
-            self._hands.later(self._hands.house.end)
-            self._hands.go(Place.SETUP)
+            self._hands.later(self._leave)
         self._sure = not self._sure
+
+    def _leave(self) -> None:
+        self._hands.house.end()
+        self._hands.go(Place.SETUP)
 
     def show(self, desk: Desk) -> None:
         """Brings the words up to what is driven."""
