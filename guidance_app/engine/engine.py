@@ -11,9 +11,13 @@ from dataclasses import fields, replace
 from typing import Any, assert_never
 
 from guidance_app.decode.decoder import Decoder
-from guidance_app.documents import Job
+from guidance_app.documents import Job, Tractor
+from guidance_app.engine import position, roll_drives
 from guidance_app.engine.attitudes import Attitudes
 from guidance_app.engine.link import after_chunk, after_down, after_up, changed_link, link_of
+from guidance_app.engine.position import Measuring, Position
+from guidance_app.engine.roll_drives import RollDrives
+from guidance_app.engine.state import why_not
 from guidance_app.engine.work_done import WorkDone
 from guidance_app.estimation.filter import Filter, FilterSettings
 from guidance_app.estimation.filters import make_filter
@@ -22,23 +26,35 @@ from guidance_app.estimation.reference_point import ImplementPoint, measurement_
 from guidance_app.geodesy import FieldFrame
 from guidance_app.model import (
     RECEIVER,
+    ApplyRollZero,
     Attitude,
+    BeginInitialisation,
+    BeginRollZero,
+    CancelRollZero,
     Chunk,
     Command,
     Commanded,
     DropOffset,
+    EndDrive,
     Event,
+    FinishRollZero,
     Fix,
+    Initialised,
     LinkState,
     LinkStatus,
+    Measurement,
+    NextRollZeroDrive,
     NoFix,
     Observation,
     OffsetKind,
-    OffsetRecord,
     OnTheMark,
+    Pause,
     Pose,
     Rejected,
+    Resume,
+    SessionState,
     SetLookAhead,
+    SkipInitialisation,
     Snapshot,
     SourceDown,
     SourceUp,
@@ -50,6 +66,8 @@ OFF = "off"
 Changes = dict[str, Any]
 """Members of a snapshot that are new; one event replaces the snapshot once, whatever it changes."""
 NO_POSE: Changes = {"pose": None, "implement": None, "prediction": None, "guidance": None}
+ANSWER_S = 12.0
+"""So long the answer to a command that could not be done stands among the notices, unless another command comes."""
 
 
 class Engine:
@@ -79,13 +97,21 @@ class Engine:
         self._implement = ImplementPoint(job.implement)
         self._predictor = Predictor(settings)
         self._look_ahead = receiver.look_ahead
-        self._mark: OffsetRecord | None = None
+        self._tractor = job.tractor
+        self._state = SessionState.IDLE
+        self._position = Position()
+        self._before = SessionState.DRIVING
+        self._start_point: tuple[float, float] | None = None
+        self._measuring: Measuring | None = None
+        self._measured: Initialised | None = None
+        self._roll_drives: RollDrives | None = None
+        self._answer: tuple[float, str] | None = None
         self._work = WorkDone(job)
         self._frame = self._work.frame
         self._raw_pose: Pose | None = None
         first = Snapshot(0, 0.0, LinkState(), look_ahead_s=self._look_ahead, filter_name=self._filter_name)
         self._members: Changes = {one.name: getattr(first, one.name) for one in fields(first)}
-        self._members |= self._work.shown_since(first, ()) | {"notices": self._notices}
+        self._members |= self._work.shown_since(first, ()) | {"notices": self._notices(0.0)} | self._procedures
         self._snapshot = Snapshot(**self._members)
 
     @property
@@ -142,6 +168,11 @@ class Engine:
             case _:
                 assert_never(event)
 
+    @property
+    def tractor(self) -> Tractor:
+        """The tractor as it is used now, with the roll zero that was applied."""
+        return self._tractor
+
     def failed(self, arrival: float, reason: str) -> Snapshot:
         """The snapshot that says that the engine itself has failed, with nothing to steer by."""
         link = replace(self._snapshot.link, status=LinkStatus.DOWN, since=arrival, reason=f"internal error: {reason}")
@@ -190,56 +221,155 @@ class Engine:
         if self._snapshot.fix is not None and fix.t > self._snapshot.fix.t:
             changes["fix_interval"] = fix.t - self._snapshot.fix.t
         try:
-            measurement = measurement_from_fix(fix, self._attitudes.at(fix.arrival), self._frame, self._job.tractor)
+            measurement = measurement_from_fix(fix, self._attitudes.at(fix.arrival), self._frame, self._tractor)
         except ValueError as error:
-            return changes | NO_POSE | {"notices": (*self._notices, str(error))}
+            return changes | NO_POSE | {"notices": (*self._notices(fix.arrival), str(error))}
+        if self._state is SessionState.IDLE:
+            self._state = SessionState.DRIVING
         self._raw_pose = self._filter.step(measurement)
-        return changes | self._guide(reported=fix.implement_down)
+        if self._state is SessionState.INITIALISING:
+            self._measure(measurement, self._frame)
+        if self._roll_drives is not None and self._raw_pose is not None:
+            self._roll_drives = self._roll_drives.with_pose(self._raw_pose)
+        return changes | self._guide(fix.arrival, reported=fix.implement_down)
 
-    def _guide(self, *, reported: bool | None) -> Changes:
-        pose = self._marked(self._raw_pose)
+    def _guide(self, arrival: float, *, reported: bool | None) -> Changes:
+        pose = self._position.of(self._raw_pose)
         if pose is None:
-            return NO_POSE | {"notices": self._notices}
+            return NO_POSE | {"notices": self._notices(arrival)} | self._procedures
         implement = self._implement.step(pose)
         prediction = self._predictor.step(pose, self._look_ahead)
-        self._work.step(pose, implement, reported=reported)
+        if self._state is not SessionState.ENDED:
+            self._work.step(pose, implement, reported=reported, counted=self._state is SessionState.DRIVING)
         if prediction is not None:
             prediction = self._work.ahead(prediction)
-        return {"pose": pose, "implement": implement, "prediction": prediction} | self._shown()
+        return {"pose": pose, "implement": implement, "prediction": prediction} | self._shown(arrival)
 
-    def _shown(self) -> Changes:
-        """What there is to guide along, what is worked, and every offset in force."""
-        shown = self._work.shown_since(self._snapshot, () if self._mark is None else (self._mark,))
-        return shown | {"notices": self._notices}
+    def _shown(self, arrival: float) -> Changes:
+        """What there is to guide along, what is worked, every offset in force, and what is under way."""
+        shown = self._work.shown_since(self._snapshot, self._position.records)
+        return shown | {"notices": self._notices(arrival)} | self._procedures
 
     @property
-    def _notices(self) -> tuple[str, ...]:
-        return (*self._told, *self._work.notices)
+    def _procedures(self) -> Changes:
+        """The session's state and its procedures, as a snapshot shows them."""
+        return {
+            "state": self._state,
+            "initialising": None if self._measuring is None else self._measuring.shown,
+            "initialised": self._measured,
+            "roll_zero": None if self._roll_drives is None else self._roll_drives.shown,
+            "roll_zero_deg": self._tractor.roll_zero_deg,
+        }
 
-    def _marked(self, pose: Pose | None) -> Pose | None:
-        """The pose with the driver's position offset."""
-        if pose is None or self._mark is None:
-            return pose
-        return replace(pose, east=pose.east + self._mark.east, north=pose.north + self._mark.north)
+    def _notices(self, arrival: float) -> tuple[str, ...]:
+        """What there is to know; first of all why the last command could not be done."""
+        if self._answer is not None and arrival >= self._answer[0] + ANSWER_S:
+            self._answer = None
+        answers = () if self._answer is None else (self._answer[1],)
+        return (*answers, *self._told, *self._work.notices)
+
+    # --- commands ---------------------------------------------------------------------------------------------------
 
     def _command(self, arrival: float, command: Command) -> Changes:
+        """What a command changes. One that cannot be done changes nothing and says why."""
+        refused = why_not(self._state, command) or self._obey(arrival, command)
+        self._answer = None if refused is None else (arrival, refused)
+        shown = self._shown(arrival) | {"look_ahead_s": self._look_ahead}
+        return shown if self._snapshot.pose is not None else shown | NO_POSE
+
+    def _obey(self, arrival: float, command: Command) -> str | None:
+        """Does it, or says in a sentence why it cannot be done."""
         match command:
             case SetLookAhead():
                 self._look_ahead = command.seconds
-                return {"look_ahead_s": command.seconds}
+            case Pause():
+                self._state = SessionState.PAUSED
+                self._work.lift()
+            case Resume():
+                self._state = SessionState.DRIVING
+            case EndDrive():
+                self._state = SessionState.ENDED
+                self._measuring = self._roll_drives = None
+                self._work.end()
             case OnTheMark():
-                self._mark = self._mark_from(arrival, command)
-            case DropOffset(kind=OffsetKind.MARK):
-                self._mark = None
+                return self._mark(arrival, command)
+            case DropOffset(kind=OffsetKind.MARK | OffsetKind.INITIALISATION):
+                self._position = self._position.without(command.kind)
+            case BeginInitialisation() | SkipInitialisation():
+                return self._initialise(command)
+            case BeginRollZero() | NextRollZeroDrive() | FinishRollZero() | ApplyRollZero() | CancelRollZero():
+                return self._calibrate(command)
             case _:
-                self._work.command(command, arrival)
-        shown = self._shown()
-        return shown if self._snapshot.pose is not None else shown | NO_POSE
+                return self._work.command(command, arrival)
+        return None
 
-    def _mark_from(self, arrival: float, command: OnTheMark) -> OffsetRecord | None:
-        """The offset that puts the reference point where the driver says it stands; unchanged without a pose."""
-        if self._frame is None or self._raw_pose is None:
-            return self._mark
-        east, north = self._frame.east_north_from_degrees(command.latitude_deg, command.longitude_deg)
-        pose = self._raw_pose
-        return OffsetRecord(OffsetKind.MARK, arrival, east=east - pose.east, north=north - pose.north)
+    def _mark(self, arrival: float, command: OnTheMark) -> str | None:
+        place = (0.0, 0.0)
+        if self._frame is not None:
+            place = self._frame.east_north_from_degrees(command.latitude_deg, command.longitude_deg)
+        found = self._position.on_the_mark(arrival, place, self._raw_pose)
+        if isinstance(found, str):
+            return found
+        self._position = found
+        return None
+
+    def _initialise(self, command: BeginInitialisation | SkipInitialisation) -> str | None:
+        if isinstance(command, SkipInitialisation):
+            self._state, self._measuring = self._before, None
+            return None
+        if self._job.receiver.measuring_time <= 0.0:
+            return "The receiver's measuring time is 0 s: there is nothing to measure."
+        place = command.latitude_deg, command.longitude_deg
+        self._start_point = None if place[0] is None or place[1] is None else (place[0], place[1])
+        self._before = SessionState.PAUSED if self._state is SessionState.PAUSED else SessionState.DRIVING
+        self._state = SessionState.INITIALISING
+        self._measuring = None if self._frame is None else self._begun(self._frame)
+        self._work.lift()
+        return None
+
+    def _begun(self, frame: FieldFrame) -> Measuring:
+        return position.begun(self._job.receiver.measuring_time, self._start_point, frame, self._raw_pose)
+
+    def _measure(self, measurement: Measurement, frame: FieldFrame) -> None:
+        """One more epoch at the start point; after the last one the drive goes on with what was learnt."""
+        self._measuring = (self._measuring or self._begun(frame)).with_measurement(measurement)
+        start = self._measuring.start
+        if start is None:
+            return
+        self._filter.begin(start)
+        self._measured = self._measuring.result(measurement.arrival, start)
+        if self._measuring.known:
+            found = self._position.initialised(measurement.arrival, start)
+            if isinstance(found, str):
+                self._answer = (measurement.arrival, found)
+            else:
+                self._position = found
+        self._state, self._measuring = self._before, None
+
+    def _calibrate(
+        self, command: BeginRollZero | NextRollZeroDrive | FinishRollZero | ApplyRollZero | CancelRollZero
+    ) -> str | None:
+        drives = self._roll_drives
+        after: RollDrives | str | None
+        match command:
+            case CancelRollZero():
+                after = None
+            case BeginRollZero():
+                after = roll_drives.begun(self._tractor, self._raw_pose)
+            case _ if drives is None:
+                after = "No calibration is under way: begin one."
+            case NextRollZeroDrive():
+                after = drives.turned()
+            case FinishRollZero():
+                after = drives.finished(self._tractor)
+            case ApplyRollZero():
+                if drives.found is None:
+                    return "Nothing has been found yet: finish both drives first."
+                self._tractor = self._tractor.model_copy(update={"roll_zero_deg": drives.found.roll_zero_deg})
+                after = None
+            case _:
+                assert_never(command)
+        if isinstance(after, str):
+            return after
+        self._roll_drives = after
+        return None

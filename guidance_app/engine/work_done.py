@@ -26,7 +26,9 @@ from guidance_app.model import (
     OffsetRecord,
     Pose,
     Prediction,
+    ReplanRest,
     ReverseDirection,
+    SetSection,
     SetWork,
     SetWorkMode,
     SkipPass,
@@ -35,6 +37,8 @@ from guidance_app.model import (
 )
 
 __all__ = ["WorkDone"]
+
+TOO_FAR = "The line cannot be moved there: it would leave its place, or be moved by more than 1000 m."
 
 SHOW_AGAIN_AFTER = 6
 """Without a field the shown lines are renewed when the target is so many passes from their middle."""
@@ -54,6 +58,8 @@ class WorkDone:
         self._track = TrackTrail()
         self._guidance: Guidance | None = None
         self._guided: tuple[Pose, tuple[float, float]] | None = None
+        self._mask = (1 << job.implement.sections) - 1
+        self._sections = (True,) * job.implement.sections
         plan = None if self._ground is None else self._ground.plan
         if plan is not None:
             self._tracker = Tracker(plan, plan.spacing, behind=self._behind)
@@ -84,18 +90,22 @@ class WorkDone:
         )
         return other
 
-    def step(self, pose: Pose, implement: tuple[float, float, float], *, reported: bool | None) -> None:
-        """One pose further: along which pass, is the implement down, what has it worked."""
+    def step(self, pose: Pose, implement: tuple[float, float, float], *, reported: bool | None, counted: bool) -> None:
+        """One pose further: along which pass, is the implement down, what has it worked.
+
+        While nothing is to be counted the implement is taken as lifted, whatever switches it.
+        """
         if self._tracker is None:
             self._look_for_a_line(pose)
         guided = self._guided_point(pose, implement)
         self._guided = pose, guided
         if self._tracker is not None:
-            self._guidance = self._tracker.step(pose, guided, self._switch.down)
+            self._guidance = self._tracker.step(pose, guided, self._working)
             self._show_around_target()
-        self._switch = self._switch.after(pose, self._guidance, reported)
+        if counted:
+            self._switch = self._switch.after(pose, self._guidance, reported)
         number = None if self._guidance is None else self._guidance.target.number
-        self._coverage.step(implement, pose.t, self._switch.down, number)
+        self._coverage.step(implement, pose.t, self._working, number, self._mask)
         self._track.step(pose.t, pose.east, pose.north, pose.heading)
 
     @property
@@ -114,38 +124,75 @@ class WorkDone:
             return implement[:2]
         return offset_point(pose.east, pose.north, pose.heading, 0.0, self._job.implement.offset_right)
 
-    def command(self, command: Command, arrival: float) -> None:
-        """The driver's wish. Without a line, wishes about lines have nothing to act on and change nothing."""
+    def lift(self) -> None:
+        """Lifts the implement; how it is switched stays as it is."""
+        self._switch = self._switch.lifted()
+
+    def end(self) -> None:
+        """The drive is over: nothing works and nothing is guided."""
+        self.lift()
+        self._guidance = self._tracker = None
+
+    @property
+    def _working(self) -> bool:
+        """Whether anything works: the implement is down and not all of its sections are switched off."""
+        return self._switch.down and self._mask != 0
+
+    def command(self, command: Command, arrival: float) -> str | None:
+        """Does what the driver wishes, or says in a sentence why it cannot be done."""
         match command:
             case SetWork():
                 self._switch = self._switch.pressed(down=command.down)
             case SetWorkMode():
                 self._switch = self._switch.with_mode(command.mode)
+            case SetSection():
+                return self._switch_section(command)
             case _:
-                if self._tracker is not None:
-                    self._line_command(self._tracker, command, arrival)
+                return self._line_command(command, arrival)
+        return None
 
-    def _line_command(self, tracker: Tracker, command: Command, arrival: float) -> None:
+    def _switch_section(self, command: SetSection) -> str | None:
+        count = self._job.implement.sections
+        if command.number > count:
+            return f"There is no section {command.number}: the implement has {count}."
+        bit = 1 << (command.number - 1)
+        self._mask = self._mask | bit if command.on else self._mask & ~bit
+        self._sections = tuple(bool(self._mask >> place & 1) for place in range(count))
+        return None
+
+    def _line_command(self, command: Command, arrival: float) -> str | None:
+        tracker = self._tracker
+        if tracker is None:
+            return "There is no line yet: drive a first straight stretch."
+        refused = self._obey(tracker, command, arrival)
+        if refused is not None:
+            return refused
+        if self._guided is not None:
+            self._guidance = tracker.step(*self._guided, self._working)
+        self._version += 1
+        return None
+
+    def _obey(self, tracker: Tracker, command: Command, arrival: float) -> str | None:
         match command:
             case TakePass():
-                tracker.take(command.number)
+                done, otherwise = tracker.take(command.number), f"There is no line {command.number}."
             case SkipPass():
-                tracker.skip()
+                done, otherwise = tracker.skip(), "There is no other line to go on with."
             case ReverseDirection():
-                tracker.reverse()
+                done, otherwise = tracker.reverse(), "There is no line yet to be driven the other way."
             case Nudge():
-                tracker.shift(command.metres, command.kind, arrival)
+                done, otherwise = tracker.shift(command.metres, command.kind, arrival), TOO_FAR
             case LineHere():
-                if self._guided is not None:
-                    tracker.line_here(self._guided[1], arrival)
+                done = self._guided is not None and tracker.line_here(self._guided[1], arrival)
+                otherwise = TOO_FAR
             case DropOffset():
-                tracker.drop(command.kind)
+                done, otherwise = tracker.drop(command.kind), TOO_FAR
+            case ReplanRest():
+                done, otherwise = False, "There is no plan: lines are driven as they come."
             case _:
                 msg = f"{type(command).__name__} is not a command about lines"
                 raise TypeError(msg)
-        if self._guided is not None:
-            self._guidance = tracker.step(*self._guided, self._switch.down)
-        self._version += 1
+        return None if done else otherwise
 
     def ahead(self, prediction: Prediction) -> Prediction:
         """The prediction with its errors against the target pass, when there is one."""
@@ -166,7 +213,8 @@ class WorkDone:
         lines = () if self._tracker is None else self._tracker.offsets
         shown: dict[str, Any] = {
             "guidance": self._guidance,
-            "working": self._switch.down,
+            "working": self._working,
+            "sections": self._sections,
             "work_mode": self._switch.mode,
             "totals": self._coverage.totals,
             "track": self._track.trail,

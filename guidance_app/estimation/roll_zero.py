@@ -14,7 +14,7 @@ import numpy as np
 from guidance_app.angles import wrap_pi
 from guidance_app.model import FloatArray, Pose
 
-__all__ = ["CalibrationError", "RollZero", "roll_zero"]
+__all__ = ["SHORTEST", "CalibrationError", "RollZero", "roll_zero"]
 
 SHORTEST = 30.0
 """A shared stretch shorter than this many metres does not average the steering out."""

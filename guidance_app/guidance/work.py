@@ -39,6 +39,10 @@ class WorkSwitch:
         """Another way of deciding. The implement stays as it is until that way says otherwise."""
         return replace(self, mode=mode, button=self.down)
 
+    def lifted(self) -> "WorkSwitch":
+        """Lifted for now; the same way of deciding."""
+        return replace(self, button=False, down=False)
+
     def after(self, pose: Pose | None, guidance: Guidance | None, reported: bool | None) -> "WorkSwitch":
         """The switch after one more fix. ``reported`` is what the implement's own switch says, None if nothing."""
         match self.mode:

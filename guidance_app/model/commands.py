@@ -1,23 +1,37 @@
 """The driver's commands, and every event that an engine takes."""
 
+import math
 from dataclasses import dataclass
 from enum import StrEnum
 
 from guidance_app.model.wire import RECEIVER, Chunk
 
 __all__ = [
+    "POSITION_OFFSETS",
+    "ApplyRollZero",
+    "BeginInitialisation",
+    "BeginRollZero",
+    "CancelRollZero",
     "Command",
     "Commanded",
     "DropOffset",
+    "EndDrive",
     "Event",
+    "FinishRollZero",
     "LineHere",
+    "NextRollZeroDrive",
     "Nudge",
     "OffsetKind",
     "OnTheMark",
+    "Pause",
+    "ReplanRest",
+    "Resume",
     "ReverseDirection",
     "SetLookAhead",
+    "SetSection",
     "SetWork",
     "SetWorkMode",
+    "SkipInitialisation",
     "SkipPass",
     "SourceDown",
     "SourceUp",
@@ -67,12 +81,16 @@ class ReverseDirection:
 
 
 class OffsetKind(StrEnum):
-    """The named offsets: of the line (nudge, shift, line here) and of the position (mark)."""
+    """The named offsets: of the line (nudge, shift, line here) and of the position (mark, initialisation)."""
 
     NUDGE = "nudge"
     SHIFT = "shift"
     LINE_HERE = "line here"
     MARK = "mark"
+    INITIALISATION = "initialisation"
+
+
+POSITION_OFFSETS = frozenset({OffsetKind.MARK, OffsetKind.INITIALISATION})
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +99,12 @@ class Nudge:
 
     metres: float
     kind: OffsetKind = OffsetKind.NUDGE
+
+    def __post_init__(self) -> None:
+        """Checks that it moves lines, by a number."""
+        if self.kind in POSITION_OFFSETS or not math.isfinite(self.metres):
+            msg = f"nudge: {self.metres:g} m ({self.kind}) does not move a line"
+            raise ValueError(msg)
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +118,10 @@ class OnTheMark:
 
     latitude_deg: float
     longitude_deg: float
+
+    def __post_init__(self) -> None:
+        """Checks that it is a place on earth."""
+        _check_place(self.latitude_deg, self.longitude_deg)
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,6 +144,96 @@ class SetLookAhead:
             raise ValueError(msg)
 
 
+@dataclass(frozen=True, slots=True)
+class BeginInitialisation:
+    """The tractor stands: measure for the receiver's measuring time, on a known point where one is given."""
+
+    latitude_deg: float | None = None
+    longitude_deg: float | None = None
+
+    def __post_init__(self) -> None:
+        """Checks that it is a place on earth, or none."""
+        if self.latitude_deg is None and self.longitude_deg is None:
+            return
+        if self.latitude_deg is None or self.longitude_deg is None:
+            msg = "start point: give latitude and longitude, or neither"
+            raise ValueError(msg)
+        _check_place(self.latitude_deg, self.longitude_deg)
+
+
+@dataclass(frozen=True, slots=True)
+class SkipInitialisation:
+    """Drive without waiting for the measuring time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pause:
+    """Nothing counts as worked until ``Resume``; guidance stays."""
+
+
+@dataclass(frozen=True, slots=True)
+class Resume:
+    """Go on after a pause."""
+
+
+@dataclass(frozen=True, slots=True)
+class EndDrive:
+    """End the drive for good: nothing counts from now on and nothing is guided."""
+
+
+MOST_SECTIONS = 64
+
+
+@dataclass(frozen=True, slots=True)
+class SetSection:
+    """Switch one section of the implement; 1 is the leftmost. A number below 1 or above 64 raises ``ValueError``."""
+
+    number: int
+    on: bool
+
+    def __post_init__(self) -> None:
+        """Checks the bounds of the implement document."""
+        if not 1 <= self.number <= MOST_SECTIONS:
+            msg = f"section: {self.number} is not from 1 to {MOST_SECTIONS}"
+            raise ValueError(msg)
+
+
+@dataclass(frozen=True, slots=True)
+class ReplanRest:
+    """Plan what is left again, from where the tractor is."""
+
+
+@dataclass(frozen=True, slots=True)
+class BeginRollZero:
+    """The first drive along a line begins, to find the roll sensor's zero."""
+
+
+@dataclass(frozen=True, slots=True)
+class NextRollZeroDrive:
+    """The first drive is over; the second goes back along the same line."""
+
+
+@dataclass(frozen=True, slots=True)
+class FinishRollZero:
+    """The second drive is over: compare both."""
+
+
+@dataclass(frozen=True, slots=True)
+class ApplyRollZero:
+    """Use what was found from now on."""
+
+
+@dataclass(frozen=True, slots=True)
+class CancelRollZero:
+    """Forget the drives and what was found."""
+
+
+def _check_place(latitude_deg: float, longitude_deg: float) -> None:
+    if not (-90.0 <= latitude_deg <= 90.0 and -180.0 <= longitude_deg <= 180.0):
+        msg = f"{latitude_deg:g}, {longitude_deg:g} is not a latitude from -90 to 90 and a longitude from -180 to 180"
+        raise ValueError(msg)
+
+
 Command = (
     SetWork
     | SetWorkMode
@@ -127,6 +245,18 @@ Command = (
     | OnTheMark
     | DropOffset
     | SetLookAhead
+    | BeginInitialisation
+    | SkipInitialisation
+    | Pause
+    | Resume
+    | EndDrive
+    | SetSection
+    | ReplanRest
+    | BeginRollZero
+    | NextRollZeroDrive
+    | FinishRollZero
+    | ApplyRollZero
+    | CancelRollZero
 )
 
 

@@ -8,6 +8,7 @@ from guidance_app.model.arrays import FloatArray
 from guidance_app.model.commands import OffsetKind, WorkMode
 from guidance_app.model.lines import Guidance, Pass, Plan
 from guidance_app.model.motion import Pose, Prediction
+from guidance_app.model.session import Initialised, Initialising, RollZeroProgress, SessionState
 from guidance_app.model.wire import Attitude, Fix, Satellite
 from guidance_app.model.worked import CoverageTotals, Trail
 
@@ -72,6 +73,9 @@ class Snapshot:
     frame's origin (latitude, longitude); ``field_rings`` the boundary and its exclusions, shape (N, 2) each, closed.
     ``link`` is the receiver's; ``links_beside`` are the others by their name, as an attitude sensor's on its own port.
     ``sky`` are the satellites in view.
+    ``initialising`` is there in that state alone; ``initialised`` is its last result. ``sections`` says which are
+    switched on, the leftmost first; ``pass_totals`` is the work on the target pass, where ``left`` is what was driven
+    by and not worked. ``roll_zero`` is a calibration under way; ``roll_zero_deg`` the zero in use.
     """
 
     sequence: int
@@ -100,4 +104,11 @@ class Snapshot:
     worked: Trail | None = None
     offsets: tuple[OffsetRecord, ...] = ()
     filter_name: str = ""
+    state: SessionState = SessionState.IDLE
+    initialising: Initialising | None = None
+    initialised: Initialised | None = None
+    sections: tuple[bool, ...] = (True,)
+    pass_totals: CoverageTotals | None = None
+    roll_zero: RollZeroProgress | None = None
+    roll_zero_deg: float = 0.0
     notices: tuple[str, ...] = ()

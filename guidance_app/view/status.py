@@ -8,7 +8,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from guidance_app.documents import Units
-from guidance_app.model import Guidance, LinkState, LinkStatus, OffsetKind, OffsetRecord, Snapshot
+from guidance_app.model import (
+    POSITION_OFFSETS,
+    Guidance,
+    LinkState,
+    LinkStatus,
+    OffsetKind,
+    OffsetRecord,
+    Snapshot,
+)
 from guidance_app.view.bar import QUALITIES, STALE_AFTER_S
 from guidance_app.view.units import INCH, area_text, offset_text, speed_text, speed_unit
 
@@ -278,7 +286,7 @@ def _uncertainty(snapshot: Snapshot, units: Units) -> str:
 def _offsets(offsets: Iterable[OffsetRecord], units: Units) -> str:
     words = [
         f"{offset.kind.value} {offset_text(math.hypot(offset.east, offset.north), units)}"
-        if offset.kind is OffsetKind.MARK
+        if offset.kind in POSITION_OFFSETS
         else f"{offset.kind.value} {_signed(offset.metres, units)}"
         for offset in offsets
     ]
