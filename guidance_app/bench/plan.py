@@ -1,52 +1,42 @@
-"""Plans of real fields: what is worked, what lies outside, what turns do not fit, and what planning costs.
+"""Plans of real fields: what is worked, what lies outside, what turns do not fit, what planning costs, beside peers.
 
 The columns ``peer`` are what Fields2Cover 2.1.0 reached on 79 real fields (26 convex, 27 concave, 26 with holes) at
-6 and 12 m: its path never works the headland, and 4 to 81 % of its plans leave the field.
+6 and 12 m with turning radii of 5 and 6 m: its path never works the headland, and 4 to 81 % of its plans leave the
+field. Planners with wheels run beside ours where they are installed.
 """
 
 import argparse
 import statistics
-import time
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import shapely
 
 from guidance_app.bench.errors import BenchError
+from guidance_app.bench.plan_cases import Case, case_of
+from guidance_app.bench.plan_peers import installed, peer_case
+from guidance_app.bench.plan_searches import search_rows
 from guidance_app.bench.rows import Row, add_json_option, shown
 from guidance_app.boundary import frame_of, polygon_in
+from guidance_app.documents import Direction, Method
 from guidance_app.guidance.planning import PlanError, PlanRequest, plan_operation
-from guidance_app.model import FloatArray, Plan, SegmentKind
 from guidance_app.store import StoreError, field_from_file
 
 __all__ = ["add_parser", "measured"]
 
 WIDTHS = (3.0, 6.0, 12.0, 24.0)
-RADII = {3.0: 4.0, 6.0: 5.0, 12.0: 6.0, 24.0: 8.0}
-SAMPLE = 0.25
-"""Metres between the points of a path that must lie inside."""
-INSIDE = 0.01
-"""Metres by which a point may be outside: below what the boundary is known to."""
+RADII = {3.0: 5.0, 6.0: 5.0, 12.0: 6.0, 24.0: 6.0}
 PEER_WORKED = {6.0: 0.57, 12.0: 0.48}
+PEER_MAINLAND = {6.0: 0.984, 12.0: 0.970}
 MEDIAN_WORKED = 0.995
 P10_WORKED = {3.0: 0.985, 6.0: 0.985, 12.0: 0.98, 24.0: 0.98}
 MOST_TWICE = {3.0: 0.03, 6.0: 0.04, 12.0: 0.07, 24.0: 0.12}
+TWICE_UNLENGTHENED = 0.015
+PEER_LAPS = 2
 
-
-@dataclass(frozen=True, slots=True)
-class _Case:
-    """What one field's plan came to."""
-
-    field: str
-    worked: float
-    twice: float
-    outside: int
-    turns: int
-    unfit: int
-    idle_ratio: float
-    cpu_s: float
+Fields = Sequence[tuple[str, shapely.Polygon]]
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -54,8 +44,8 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser = subparsers.add_parser(
         "plan",
         help="plans of a folder of fields: worked, outside, turns that do not fit, time",
-        description="Plans every field of a folder at 3, 6, 12 and 24 m by round trip, and prints median, tenth or"
-        " ninetieth percentile and the worst field of each quantity.",
+        description="Plans every field of a folder at 3, 6, 12 and 24 m by round trip in the best direction, and prints"
+        " median, tenth or ninetieth percentile and the worst field of each quantity; the other methods at 6 m.",
     )
     parser.add_argument("--fields", type=Path, required=True, metavar="DIR", help="folder of GeoJSON polygons")
     add_json_option(parser)
@@ -74,7 +64,12 @@ def measured(folder: Path) -> list[Row]:
     if not fields:
         msg = f"{folder} holds no GeoJSON polygon that can be planned"
         raise BenchError(msg)
-    return [row for width in WIDTHS for row in _rows_for(width, fields)]
+    plan_operation(fields[0][1], PlanRequest(width=24.0))  # libraries load what they load on the first plan
+    rows = [row for width in WIDTHS for row in _rows_for(width, fields)]
+    rows.extend(_rows_of_methods(fields))
+    rows.extend(_rows_of_peers(fields))
+    rows.extend(search_rows(fields))
+    return rows
 
 
 def _fields(folder: Path) -> Iterator[tuple[str, shapely.Polygon]]:
@@ -86,22 +81,56 @@ def _fields(folder: Path) -> Iterator[tuple[str, shapely.Polygon]]:
         yield path.stem, polygon_in(frame_of(boundary), boundary)
 
 
-def _rows_for(width: float, fields: list[tuple[str, shapely.Polygon]]) -> Iterator[Row]:
+def _request(width: float) -> PlanRequest:
+    return PlanRequest(width=width, radius=RADII[width], direction=Direction.BEST)
+
+
+def _cases(fields: Fields, request: PlanRequest) -> tuple[list[Case], list[str]]:
+    """The fields' plans, and why there is none for the others."""
     cases, refused = [], []
     for name, polygon in fields:
         try:
-            cases.append(_case(name, polygon, PlanRequest(width=width, radius=RADII[width])))
+            cases.append(case_of(name, polygon, request))
         except PlanError as error:
             refused.append(f"{name}: {error}")
+    return cases, refused
+
+
+def _rows_for(width: float, fields: Fields) -> Iterator[Row]:
+    cases, refused = _cases(fields, _request(width))
     title = f"{width:g} m: "
     yield Row("plan", f"{title}fields planned", len(cases), f"of {len(fields)}", note="; ".join(refused))
-    if cases:
-        yield from _worked_rows(title, width, cases)
-        yield from _drive_rows(title, cases)
-        yield from _time_rows(title, cases)
+    if not cases:
+        return
+    yield from _inside_rows(title, cases)
+    yield from _worked_rows(title, width, cases)
+    yield from _twice_rows(title, width, cases, fields)
+    yield from _time_rows(title, cases)
 
 
-def _worked_rows(title: str, width: float, cases: list[_Case]) -> Iterator[Row]:
+def _inside_rows(title: str, cases: Sequence[Case]) -> Iterator[Row]:
+    out = [case for case in cases if case.outside]
+    names = ", ".join(f"{case.field} ({case.outside})" for case in out[:6])
+    yield Row("plan", f"{title}plans with a point outside", len(out), "", "0", names or "peer 4-81 % of fields")
+    joins, unfit = sum(case.joins for case in cases), sum(case.unfit for case in cases)
+    worst = max(cases, key=lambda case: case.unfit)
+    note = f"{unfit} of {joins}" + (f", most {worst.field} {worst.unfit}" if unfit else "")
+    yield Row("plan", f"{title}turns that do not fit", unfit / max(joins, 1), "", "<= 0.02", note)
+    bent = max(cases, key=lambda case: case.tightest)
+    yield Row("plan", f"{title}tightest bend", bent.tightest, "1/R", "<= 1", f"{bent.field}, vertex by vertex")
+
+
+def _worked_rows(title: str, width: float, cases: Sequence[Case]) -> Iterator[Row]:
+    poorest = min(cases, key=lambda case: case.mainland_worked)
+    peer = f"; peer {PEER_MAINLAND[width]} median" if width in PEER_MAINLAND else ""
+    yield Row(
+        "plan",
+        f"{title}mainland worked, least",
+        poorest.mainland_worked,
+        "",
+        ">= 0.9999",
+        f"{poorest.field}{peer}",
+    )
     worked = [case.worked for case in cases]
     worst = min(cases, key=lambda case: case.worked)
     peer = f"peer {PEER_WORKED[width]}" if width in PEER_WORKED else ""
@@ -114,6 +143,18 @@ def _worked_rows(title: str, width: float, cases: list[_Case]) -> Iterator[Row]:
         f">= {P10_WORKED[width]}",
         f"worst {worst.field} {worst.worked:.3f}",
     )
+    idle = [case.idle_ratio for case in cases]
+    yield Row(
+        "plan",
+        f"{title}not worked over worked, median",
+        statistics.median(idle),
+        "",
+        "<= 0.16-0.28",
+        f"p90 {np.percentile(idle, 90):.2f}; peer 0.16-0.28 without the headland",
+    )
+
+
+def _twice_rows(title: str, width: float, cases: Sequence[Case], fields: Fields) -> Iterator[Row]:
     most = max(cases, key=lambda case: case.twice)
     yield Row(
         "plan",
@@ -121,26 +162,20 @@ def _worked_rows(title: str, width: float, cases: list[_Case]) -> Iterator[Row]:
         statistics.median(case.twice for case in cases),
         "",
         f"<= {MOST_TWICE[width]}",
-        f"most {most.field} {most.twice:.3f}",
+        f"p90 {np.percentile([case.twice for case in cases], 90):.3f}, most {most.field} {most.twice:.3f}",
     )
-
-
-def _drive_rows(title: str, cases: list[_Case]) -> Iterator[Row]:
-    out = [case for case in cases if case.outside]
-    names = ", ".join(f"{case.field} ({case.outside})" for case in out[:6])
-    yield Row("plan", f"{title}plans with a point outside", len(out), "", "0", names)
-    turns, unfit = sum(case.turns for case in cases), sum(case.unfit for case in cases)
-    yield Row("plan", f"{title}turns that do not fit", unfit / max(turns, 1), "", "<= 0.02", f"{unfit} of {turns}")
+    plain, _ = _cases(fields, replace(_request(width), lengthen=False, leftovers=False, square_corners=False))
     yield Row(
         "plan",
-        f"{title}not worked over worked, median",
-        statistics.median(case.idle_ratio for case in cases),
+        f"{title}worked twice without lengthening, median",
+        statistics.median(case.twice for case in plain),
         "",
-        note="peer 0.16-0.28",
+        f"<= {TWICE_UNLENGTHENED}",
+        f"field worked {statistics.median(case.worked for case in plain):.3f}",
     )
 
 
-def _time_rows(title: str, cases: list[_Case]) -> Iterator[Row]:
+def _time_rows(title: str, cases: Sequence[Case]) -> Iterator[Row]:
     seconds = [case.cpu_s for case in cases]
     slowest = max(cases, key=lambda case: case.cpu_s)
     yield Row("plan", f"{title}CPU, median", statistics.median(seconds), "s", "<= 0.1", "peer 0.13-0.27")
@@ -154,32 +189,30 @@ def _time_rows(title: str, cases: list[_Case]) -> Iterator[Row]:
     )
 
 
-def _case(name: str, polygon: shapely.Polygon, request: PlanRequest) -> _Case:
-    begin = time.process_time()
-    plan = plan_operation(polygon, request)
-    seconds = time.process_time() - begin
-    ways = [one for one in plan.segments if one.kind in {SegmentKind.TURN, SegmentKind.TRANSFER}]
-    return _Case(
-        field=name,
-        worked=plan.costs.worked_fraction,
-        twice=plan.costs.overlap_fraction,
-        outside=_points_outside(plan, polygon),
-        turns=len(ways),
-        unfit=sum(not one.fits for one in ways),
-        idle_ratio=plan.costs.idle_m / plan.costs.work_m,
-        cpu_s=seconds,
-    )
+def _rows_of_methods(fields: Fields) -> Iterator[Row]:
+    """The other methods at 6 m: what must hold whatever the method."""
+    for method in (Method.TRANSFER, Method.INTERMEDIATE_DIVISION, Method.SURROUNDING):
+        cases, _ = _cases(fields, replace(_request(6.0), method=method))
+        title = f"6 m, {method.value}: "
+        yield from _inside_rows(title, cases)
+        poorest = min(cases, key=lambda case: case.mainland_worked)
+        least = poorest.mainland_worked
+        yield Row("plan", f"{title}mainland worked, least", least, "", ">= 0.9999", poorest.field)
+        yield Row("plan", f"{title}field worked, median", statistics.median(case.worked for case in cases), "")
+        yield Row("plan", f"{title}CPU, median", statistics.median(case.cpu_s for case in cases), "s", "<= 0.1")
 
 
-def _points_outside(plan: Plan, polygon: shapely.Polygon) -> int:
-    """How many samples of the path that claims to fit lie outside the field or in an obstacle."""
-    room = polygon.buffer(INSIDE)
-    shapely.prepare(room)
-    samples = np.vstack([_sampled(one.points, closed=one.closed) for one in plan.segments if one.fits])
-    return int(np.count_nonzero(~shapely.contains_xy(room, samples[:, 0], samples[:, 1])))
-
-
-def _sampled(points: FloatArray, *, closed: bool) -> FloatArray:
-    line = shapely.linestrings(np.vstack([points, points[:1]]) if closed else points)
-    places = np.arange(0.0, float(shapely.length(line)), SAMPLE)
-    return np.asarray(shapely.get_coordinates(shapely.line_interpolate_point(line, places)), dtype=np.float64)
+def _rows_of_peers(fields: Fields) -> Iterator[Row]:
+    planners = installed()
+    if not planners:
+        yield Row("plan", "peers beside ours", 0, "", note="none is installed: pip install 'guidance-app[peers]'")
+    for name, planner in planners.items():
+        cases = [peer_case(planner, polygon, 6.0, RADII[6.0], PEER_LAPS) for _, polygon in fields]
+        made = [case for case in cases if not case.failed]
+        failures = sorted({case.failed[:60] for case in cases if case.failed})
+        title = f"6 m, {name}: "
+        yield Row("plan", f"{title}fields planned", len(made), f"of {len(fields)}", note="; ".join(failures[:2]))
+        if made:
+            yield Row("plan", f"{title}plans with a point outside", sum(case.outside > 0 for case in made), "")
+            yield Row("plan", f"{title}field worked, median", statistics.median(case.worked for case in made), "")
+            yield Row("plan", f"{title}CPU, median", statistics.median(case.cpu_s for case in made), "s")

@@ -9,8 +9,9 @@ from guidance_app.boundary import frame_of, polygon_in
 from guidance_app.documents import FieldDocument, Job, Method
 from guidance_app.geodesy import FieldFrame
 from guidance_app.guidance.family import ParallelLines, PassFamily
+from guidance_app.guidance.itinerary import passes_of
 from guidance_app.guidance.planning import PlanError, plan_operation, request_from_documents
-from guidance_app.model import FloatArray, Pass, Plan, SegmentKind
+from guidance_app.model import FloatArray, Pass, Plan
 
 __all__ = ["Ground", "ground_beside", "ground_of", "mainland_of", "shown_beside"]
 
@@ -48,7 +49,7 @@ def ground_of(job: Job) -> Ground | None:
         plan = plan_operation(polygon, request)
     except PlanError as error:
         return Ground(frame, polygon, rings, notices=(f"No plan: {error}. Guiding along the first straight stretch.",))
-    return Ground(frame, polygon, rings, plan, passes=_passes_of(plan), notices=plan.warnings)
+    return Ground(frame, polygon, rings, plan, passes=passes_of(plan), notices=plan.warnings)
 
 
 def ground_beside(ground: Ground, stretch: tuple[tuple[float, float], tuple[float, float]], spacing: float) -> Ground:
@@ -76,14 +77,6 @@ def mainland_of(plan: Plan | None) -> shapely.MultiPolygon | None:
     if plan is None or not plan.mainland:
         return None
     return shapely.MultiPolygon([shapely.Polygon(part[0], part[1:]) for part in plan.mainland])
-
-
-def _passes_of(plan: Plan) -> tuple[Pass, ...]:
-    works = [one for one in plan.segments if one.kind in {SegmentKind.PASS, SegmentKind.LAP}]
-    return tuple(
-        Pass(one.number, one.points, closed=one.closed, order=order, lap=one.kind is SegmentKind.LAP)
-        for order, one in enumerate(works)
-    )
 
 
 def _entrance(frame: FieldFrame, field: FieldDocument) -> tuple[float, float] | None:

@@ -1,7 +1,9 @@
 """What a plan costs: distances, turns, minutes, and what of the field is worked, worked twice and missed."""
 
+import itertools
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
@@ -9,32 +11,51 @@ from shapely.geometry.base import BaseGeometry
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.model import PlanCosts, Segment, SegmentKind
 
-__all__ = ["costs_of", "joins_of"]
+__all__ = ["costs_of", "driven_costs", "joins_of"]
 
 
 def costs_of(
     segments: Sequence[Segment], ground: Polygon, worked: BaseGeometry, swaths_area: float, request: PlanRequest
 ) -> PlanCosts:
-    """Sums over the segments, and areas; ``worked`` is the union of the swaths, ``swaths_area`` the sum of theirs.
+    """Sums over the segments, and areas; ``worked`` is the union of the swaths, ``swaths_area`` the sum of theirs."""
+    inside = worked.intersection(ground).area
+    areas = PlanCosts(
+        work_m=0.0,
+        idle_m=0.0,
+        turns=0,
+        tight_turns=0,
+        minutes=0.0,
+        worked_fraction=min(1.0, inside / ground.area),
+        overlap_fraction=max(0.0, swaths_area - worked.area) / worked.area if worked.area else 0.0,
+        missed_m2=max(0.0, ground.area - inside),
+    )
+    return driven_costs(segments, areas, request)
+
+
+def driven_costs(segments: Sequence[Segment], areas: PlanCosts, request: PlanRequest) -> PlanCosts:
+    """The costs with the sums over these segments; areas stay as they are.
 
     A turn is tight when the machine backs up in it, or its ends are nearer to each other than the turning circle.
     """
     work = sum(each.length for each in segments if each.implement_down)
     idle = sum(each.length for each in segments if not each.implement_down)
-    stops = 2 * sum(each.reverse for each in segments)
     joins = joins_of(segments)
-    inside = worked.intersection(ground).area
-    seconds = work / request.work_speed + idle / request.turn_speed + stops * request.stop_s
-    return PlanCosts(
+    gear_changes = sum(_gear_changes(join) for join in joins)
+    seconds = work / request.work_speed + idle / request.turn_speed + gear_changes * request.stop_s
+    return replace(
+        areas,
         work_m=work,
         idle_m=idle,
         turns=len(joins),
         tight_turns=sum(_tight(join, request.path_radius) for join in joins),
         minutes=seconds / 60,
-        worked_fraction=min(1.0, inside / ground.area),
-        overlap_fraction=max(0.0, swaths_area - worked.area) / worked.area if worked.area else 0.0,
-        missed_m2=max(0.0, ground.area - inside),
     )
+
+
+def _gear_changes(join: Sequence[Segment]) -> int:
+    """Times that the tractor stops to change between forward and backward, coming from and going on to work."""
+    gears = [False, *(each.reverse for each in join), False]
+    return sum(before != after for before, after in itertools.pairwise(gears))
 
 
 def joins_of(segments: Sequence[Segment]) -> list[list[Segment]]:

@@ -19,7 +19,7 @@ from guidance_app.guidance.family import Learner, PassFamily, drawn_line, offset
 from guidance_app.guidance.polyline import Polyline
 from guidance_app.model import FloatArray, Pass, Plan, Segment, SegmentKind
 
-__all__ = ["FamilyItinerary", "GuideLine", "Itinerary", "Path", "PlanItinerary", "PlanOrder"]
+__all__ = ["FamilyItinerary", "GuideLine", "Itinerary", "Path", "PlanItinerary", "PlanOrder", "passes_of"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -179,6 +179,8 @@ class FamilyItinerary:
 ALONG = math.radians(45)
 """A tractor that points within this of a way follows it."""
 
+WORKED = frozenset((SegmentKind.PASS, SegmentKind.LAP))
+
 POINTS_A_PIECE = 32
 """The search tree holds pieces of passes of at most so many points."""
 
@@ -281,18 +283,25 @@ def _guide_line(key: int, target: Pass) -> GuideLine:
     return GuideLine(key, target, polyline, polyline.length)
 
 
+def passes_of(plan: Plan) -> tuple[Pass, ...]:
+    """Passes and laps in their order: those finished before the plan was made, then its own as they are driven."""
+    works = [*plan.finished, *(each for each in plan.segments if each.kind in WORKED)]
+    return tuple(
+        Pass(each.number, each.points, each.closed, order=order, lap=each.kind is SegmentKind.LAP)
+        for order, each in enumerate(works)
+    )
+
+
 def _order_of(plan: Plan) -> PlanOrder:
-    lines: list[GuideLine] = []
-    ways: list[Path | None] = []
+    lines = [_guide_line(key, target) for key, target in enumerate(passes_of(plan))]
+    ways: list[Path | None] = [None] * len(plan.finished)
     between: list[Segment] = []
     for segment in plan.segments:
-        if segment.kind in (SegmentKind.TURN, SegmentKind.TRANSFER):
+        if segment.kind not in WORKED:
             between.append(segment)
             continue
         ways.append(_path(between))
         between = []
-        key, lap = len(lines), segment.kind is SegmentKind.LAP
-        lines.append(_guide_line(key, Pass(segment.number, segment.points, segment.closed, order=key, lap=lap)))
     if not lines:
         msg = "the plan has no pass to drive"
         raise ValueError(msg)

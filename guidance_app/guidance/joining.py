@@ -1,12 +1,16 @@
 """From tasks in driving order to the segments of a plan: what joins one task to the next, and where laps begin."""
 
 import itertools
+import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 import shapely
 
 from guidance_app.guidance.lap import Lap
+from guidance_app.guidance.request import PlanRequest
+from guidance_app.guidance.room import TOUCH, Room
 from guidance_app.guidance.task import Task, side_tasks
 from guidance_app.guidance.turn import Turn
 from guidance_app.guidance.turns import Turner
@@ -18,52 +22,78 @@ __all__ = ["Joiner"]
 LAP_STEP = 2.0
 """Metres between the places at which a lap may be begun."""
 
+LAP_SIDE = 3.0
+"""Turning radii that a lap's first side has at least: enough to change over to the next lap before the corner."""
+
 LAP_PLACES = 60
 """Nearest places of a lap that are looked at."""
+
+LAP_WAYS = 3
+"""Places of a lap to which a transfer is looked for when no turn leads to it."""
+
+ARRIVED = 0.5
+"""Metres; nearer than this to the first pass's start the tractor stands on it."""
+
+PLACE = 2
+"""Numbers in a place; a pose has three."""
 
 FAR = 6.0
 """Turning radii between two passes beyond which the way along the headland is compared with the direct turn."""
 
 
 class Joiner:
-    """Joins tasks in one field."""
+    """Joins tasks in one field.
 
-    def __init__(self, turner: Turner, ways: Ways) -> None:
+    On a lap along the boundary the implement's outer end swings out in every corner; from lap to lap, where nothing
+    else fits, it may swing out as far.
+    """
+
+    def __init__(self, turner: Turner, ways: Ways, request: PlanRequest) -> None:
         self._turner = turner
         self._ways = ways
+        self._lap_turner = turner.within(Room(turner.room.polygon, request.body, TOUCH + _swing(request)))
 
-    def segments(self, tasks: Sequence[Task]) -> Iterator[Segment]:
-        """The whole of it in driving order."""
+    def segments(self, tasks: Sequence[Task], start: FloatArray | None = None) -> Iterator[Segment]:
+        """The whole of it in driving order; from the pose ``start`` (3,) if there is one."""
         turns = self._turns(tasks)
+        if start is not None and math.dist(start[:2], tasks[0].first[:2]) > ARRIVED:
+            yield from _joining(replace(self._ways.way(start, tasks[0].first), transfer=True), tasks[0].number)
         for place, task in enumerate(tasks):
             if place:
                 yield from _joining(turns[place - 1], task.number)
             yield _worked(task)
 
-    def round_tasks(self, laps: Sequence[Lap], last: FloatArray | None, number: int, *, inward: bool) -> list[Task]:
-        """All laps, those about one ring of the boundary after each other, the nearest such nest next."""
+    def round_tasks(self, laps: Sequence[Lap], last: FloatArray, number: int, *, inward: bool) -> list[Task]:
+        """All laps, those about one ring of the boundary after each other, the nearest such nest next.
+
+        ``last`` is the pose (3,) from which they are reached, or only the place (2,) near which they begin.
+        """
         nests: dict[int, list[Lap]] = {}
         for lap in sorted(laps, key=lambda lap: lap.place, reverse=not inward):
             nests.setdefault(lap.nest, []).append(lap)
         tasks: list[Task] = []
         while nests:
-            nest = min(nests, key=lambda each: _apart(nests[each][0], last))
+            nest = min(nests, key=lambda each: float(np.hypot(*(nests[each][0].points - last[:2]).T).min()))
             for lap in nests.pop(nest):
-                tasks.extend(self.lap_tasks(lap, last, number + len(tasks)))
+                tasks.extend(self._lap_tasks(lap, last, number + len(tasks)))
                 last = tasks[-1].last
         return tasks
 
-    def lap_tasks(self, lap: Lap, last: FloatArray | None, number: int) -> list[Task]:
-        """The sides of a lap, begun where it is reached soonest from the pose ``last``."""
-        poses, along = lap.poses(LAP_STEP)
-        if last is None:
+    def _lap_tasks(self, lap: Lap, last: FloatArray, number: int) -> list[Task]:
+        """The sides of a lap, begun where it is reached soonest."""
+        poses, along = lap.poses(LAP_STEP, LAP_SIDE * self._turner.radius)
+        if not len(along):
             return side_tasks(lap, 0.0, number, None)
         order = np.argsort(np.hypot(*(poses[:, :2] - last[:2]).T))[:LAP_PLACES]
-        found = self._turner.nearest(last, poses[order], np.zeros(len(order)))
-        if found is not None:
-            return side_tasks(lap, float(along[order[found[0]]]), number, found[1])
-        nearest = int(order[0])
-        return side_tasks(lap, float(along[nearest]), number, self._ways.way(last, poses[nearest]))
+        if len(last) == PLACE:
+            return side_tasks(lap, float(along[order[0]]), number, None)
+        for turner in (self._turner, self._lap_turner):
+            found = turner.nearest(last, poses[order])
+            if found is not None:
+                return side_tasks(lap, float(along[order[found[0]]]), number, found[1])
+        ways = {int(place): self._ways.way(last, poses[place]) for place in order[:: max(1, len(order) // LAP_WAYS)]}
+        begin = min(ways, key=lambda place: (not ways[place].fits, ways[place].length))
+        return side_tasks(lap, float(along[begin]), number, ways[begin])
 
     def _turns(self, tasks: Sequence[Task]) -> list[Turn]:
         pairs = list(itertools.pairwise(tasks))
@@ -84,10 +114,10 @@ class Joiner:
         ]
 
 
-def _apart(lap: Lap, last: FloatArray | None) -> float:
-    if last is None:
-        return float(lap.nest)
-    return float(np.hypot(*(lap.points - last[:2]).T).min())
+def _swing(request: PlanRequest) -> float:
+    """Metres by which the implement's outer rear end leaves its straight edge when the tractor turns away from it."""
+    outer = request.path_radius + request.width / 2
+    return math.hypot(outer, min(request.body.implement_rear, 0.0)) - outer
 
 
 def _worked(task: Task) -> Segment:

@@ -58,11 +58,21 @@ class Lap:
         """Shape (N, 2), the first point not repeated."""
         return self.line.points
 
-    def poses(self, step: float) -> tuple[FloatArray, FloatArray]:
-        """Poses (M, 3) at which the lap may be begun, and how far along each is; not where the implement is up."""
-        along = self.line.places(step)
-        for corner in self.corners:
-            along = along[(along < corner.lift) | (along > corner.end)]
+    def poses(self, step: float, ahead: float) -> tuple[FloatArray, FloatArray]:
+        """Poses (M, 3) at which the lap may be begun, and how far along each is.
+
+        Not where the implement is up, nor so short of it that there are no ``ahead`` metres to work before; where no
+        side is that long, anywhere on a side.
+        """
+        everywhere = self.line.places(step)
+        for metres in (ahead, 0.0):
+            along = everywhere
+            for corner in self.corners:
+                before_lift = np.mod(corner.lift - along, self.line.length)
+                raised = np.mod(corner.end - along, self.line.length) <= corner.end - corner.lift
+                along = along[(before_lift >= metres) & ~raised]
+            if len(along):
+                break
         return self.line.poses(along), along
 
     def sides_from(self, begin: float) -> Iterator[Side]:

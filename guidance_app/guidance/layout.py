@@ -1,20 +1,20 @@
 """Where a field is worked, whatever the order: laps, cells of passes, leftovers, and the ground they work."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from guidance_app.documents import Direction, Method
-from guidance_app.guidance.cells import cells_of, cut, cut_inside, strips_over
+from guidance_app.guidance.bundle import Bundle
+from guidance_app.guidance.cells import Piece, Strips, cells_of, cut, cut_inside, strips_over
 from guidance_app.guidance.direction import pass_heading
 from guidance_app.guidance.headland import Headland, headland_of, laps_only
-from guidance_app.guidance.leftover import Leftover, leftovers
+from guidance_app.guidance.leftover import leftovers
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.guidance.room import Room
-from guidance_app.guidance.route import Cell
 from guidance_app.guidance.swaths import swath, united
 from guidance_app.guidance.task import Task, pass_line, side_tasks
 
@@ -32,8 +32,7 @@ class Layout:
     headland: Headland
     heading: float
     spacing: float
-    cells: tuple[Cell, ...]
-    leftovers: tuple[Leftover, ...]
+    bundles: tuple[Bundle, ...]
     worked: BaseGeometry
     swaths_area: float
 
@@ -43,32 +42,39 @@ def layout_of(ground: Polygon, room: Room, request: PlanRequest) -> Layout:
     headland = laps_only(ground, request) if request.method is Method.SURROUNDING else headland_of(ground, request)
     heading = pass_heading(ground, headland.mainland, request)
     mainland = headland.mainland if headland.laps else ()
-    cells, spacing = _cells(mainland, heading, request)
-    tasks = [task for lap in headland.laps for task in side_tasks(lap, 0.0, 0, None)]
-    tasks.extend(Task.along(pass_line(piece, cell.strips)) for cell in cells for piece in cell.pieces)
-    swaths = [swath(task, request.width) for task in tasks]
+    bundles, spacing = _bundles(mainland, heading, request)
+    sides = [task for lap in headland.laps for task in side_tasks(lap, 0.0, 0, None)]
+    swaths = [swath(task, request.width) for task in sides] + _swaths(bundles, request.width)
     worked = united(swaths)
-    area = float(shapely.area(swaths).sum()) if swaths else 0.0
-    found: list[Leftover] = []
-    for attempt in range(ROUNDS):
+    area = sum(each.area for each in swaths)
+    for attempt in range(ROUNDS if request.leftovers else 0):
         preferred = heading if attempt == 0 and not headland.laps else None
         more = leftovers(ground, worked, room, request, preferred)
         if not more:
             break
-        found.extend(more)
-        swaths = [swath(Task.along(line[0]), request.width) for each in more for line in each.lines]
-        area += float(shapely.area(swaths).sum())
+        bundles.extend(more)
+        swaths = _swaths(more, request.width)
+        area += sum(each.area for each in swaths)
         worked = united([worked, *swaths])
-    return Layout(ground, headland, heading, spacing, cells, tuple(found), worked, area)
+    return Layout(ground, headland, heading, spacing, tuple(bundles), worked, area)
 
 
-def _cells(mainland: tuple[Polygon, ...], heading: float, request: PlanRequest) -> tuple[tuple[Cell, ...], float]:
+def _bundles(mainland: tuple[Polygon, ...], heading: float, request: PlanRequest) -> tuple[list[Bundle], float]:
     if not mainland:
-        return (), request.spacing
+        return [], request.spacing
     across = _line_across(heading, request)
     strips = strips_over(mainland, heading, request.spacing, request.last_pass, across)
     pieces = cut(mainland, strips) if request.lengthen else cut_inside(mainland, strips)
-    return tuple(Cell(run, strips) for run in cells_of(pieces)), strips.spacing
+    return [_bundle(cell, strips) for cell in cells_of(pieces)], strips.spacing
+
+
+def _bundle(cell: Sequence[Piece], strips: Strips) -> Bundle:
+    lines = [pass_line(piece, strips) for piece in cell]
+    return Bundle(tuple((line, line[::-1]) for line in lines), rows=(cell[0].row, cell[-1].row))
+
+
+def _swaths(bundles: Sequence[Bundle], width: float) -> list[BaseGeometry]:
+    return [swath(Task.along(line), width) for bundle in bundles for line, _ in bundle.lines]
 
 
 def _line_across(heading: float, request: PlanRequest) -> float | None:

@@ -4,9 +4,7 @@ Each leftover gets strips along its longer side. A strip is worked as far as the
 end it stops where the front reaches the boundary, and is driven out of backward.
 """
 
-import itertools
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import shapely
@@ -14,15 +12,14 @@ from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from guidance_app.angles import heading_between
+from guidance_app.guidance.bundle import Bundle
 from guidance_app.guidance.cells import Strips
 from guidance_app.guidance.clearance import parts_of
-from guidance_app.guidance.pattern import PassOrder
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.guidance.room import Room
-from guidance_app.guidance.task import Task
 from guidance_app.model import FloatArray
 
-__all__ = ["Leftover", "LeftoverRun", "leftovers", "runs_of"]
+__all__ = ["leftovers"]
 
 SLIVER = 0.12
 """Working widths; what is narrower than twice this is not worth a pass."""
@@ -46,40 +43,9 @@ SHIFTS = (0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45)
 """Working widths by which a strip is shifted sideways to find room."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Leftover:
-    """Strips side by side; each the line (2, 2) to work when it is driven along the heading, and against it."""
-
-    lines: tuple[tuple[FloatArray, FloatArray], ...]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class LeftoverRun:
-    """A leftover's strips in driving order, as lines (2, 2) in driving direction, and each one's place across."""
-
-    lines: tuple[FloatArray, ...]
-    places: tuple[int, ...]
-
-    @property
-    def start(self) -> FloatArray:
-        """Where it begins, (2,): east, north."""
-        first: FloatArray = self.lines[0][0]
-        return first
-
-    @property
-    def end(self) -> FloatArray:
-        """Where it ends."""
-        last: FloatArray = self.lines[-1][1]
-        return last
-
-    def tasks(self, done: int) -> list[Task]:
-        """The passes, numbered from ``done`` + 1 across the leftover."""
-        return [Task.along(line, done + place + 1) for place, line in zip(self.places, self.lines, strict=True)]
-
-
 def leftovers(
     ground: Polygon, worked: BaseGeometry, room: Room, request: PlanRequest, heading: float | None = None
-) -> list[Leftover]:
+) -> list[Bundle]:
     """Strips for every leftover that is worth working and has room for the machine, along ``heading`` if given."""
     sliver = SLIVER * request.width
     rest = ground.difference(worked).buffer(-sliver, join_style="mitre").buffer(sliver, join_style="mitre")
@@ -88,22 +54,7 @@ def leftovers(
     return [each for each in found if each.lines]
 
 
-def runs_of(leftover: Leftover, order: PassOrder) -> list[LeftoverRun]:
-    """The four ways to work a leftover in the method's order, each strip from its nearer end."""
-    ways = itertools.product((False, True) if len(leftover.lines) > 1 else (False,), (0, 1))
-    return [_run(leftover, order, from_last, way) for from_last, way in ways]
-
-
-def _run(leftover: Leftover, order: PassOrder, from_last: bool, way: int) -> LeftoverRun:
-    strips = leftover.lines[::-1] if from_last else leftover.lines
-    lines = [strips[order.sequence[0]][way]]
-    for place in order.sequence[1:]:
-        both = strips[place]
-        lines.append(both[way] if order.one_way else min(both, key=lambda line: math.dist(line[0], lines[-1][1])))
-    return LeftoverRun(tuple(lines), order.sequence)
-
-
-def _strips(part: Polygon, room: Room, request: PlanRequest, heading: float | None) -> Leftover:
+def _strips(part: Polygon, room: Room, request: PlanRequest, heading: float | None) -> Bundle:
     strips = Strips(_long_heading(part) if heading is None else heading, 0.0, request.spacing, 0)
     turned = shapely.transform(part, strips.along_across)
     _, low, _, high = turned.bounds
@@ -117,7 +68,7 @@ def _strips(part: Polygon, room: Room, request: PlanRequest, heading: float | No
             line = _both_ways(middle, reach, axes, room, request)
             if line is not None:
                 lines.append(line)
-    return Leftover(tuple(lines))
+    return Bundle(tuple(lines))
 
 
 def _reaches(turned: Polygon, middle: float, width: float) -> list[tuple[float, float]]:

@@ -1,27 +1,37 @@
 """A whole field's plan: headland laps, passes in driving order, and what joins them."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
+import numpy as np
 import shapely
 from shapely import Polygon
 
 from guidance_app.documents import Method
+from guidance_app.guidance.bundle import Run, runs_of
 from guidance_app.guidance.costs import costs_of, joins_of
 from guidance_app.guidance.ground import ground_of
 from guidance_app.guidance.joining import Joiner
 from guidance_app.guidance.layout import Layout, layout_of
-from guidance_app.guidance.leftover import runs_of as leftover_runs
 from guidance_app.guidance.pattern import OperationMethod, PatternOptions
 from guidance_app.guidance.patterns import METHODS
 from guidance_app.guidance.request import PlanError, PlanRequest, request_from_documents
 from guidance_app.guidance.room import Room
-from guidance_app.guidance.route import Way, route, runs_of
+from guidance_app.guidance.route import route
 from guidance_app.guidance.task import Task
 from guidance_app.guidance.turns import Turner
 from guidance_app.guidance.ways import Ways
 from guidance_app.model import FloatArray, Plan, Segment
 
-__all__ = ["PlanError", "PlanRequest", "plan_operation", "request_from_documents"]
+__all__ = [
+    "Groundwork",
+    "PlanError",
+    "PlanRequest",
+    "groundwork_of",
+    "plan_on",
+    "plan_operation",
+    "request_from_documents",
+]
 
 UNWORKED = 0.02
 """Part of the field that may stay unworked without a warning."""
@@ -29,15 +39,34 @@ UNWORKED = 0.02
 
 def plan_operation(polygon: Polygon, request: PlanRequest) -> Plan:
     """The passes of one operation on one field (east, north in metres). Raises ``PlanError`` with the reason."""
-    method, options = _method(request)
+    return plan_on(groundwork_of(polygon, request), request)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Groundwork:
+    """What of a plan does not depend on the order of passes or where the work begins."""
+
+    layout: Layout
+    joiner: Joiner
+
+
+def groundwork_of(polygon: Polygon, request: PlanRequest) -> Groundwork:
+    """Where the field is worked, and who finds the ways. Raises ``PlanError`` with the reason."""
     ground = ground_of(polygon, request)
     room = Room(ground, request.body)
     layout = layout_of(ground, room, request)
     turner = Turner(room, request)
-    joiner = Joiner(turner, Ways(turner, [lap.line for lap in layout.headland.laps], layout.headland.mainland))
+    ways = Ways(turner, [lap.line for lap in layout.headland.laps], layout.headland.mainland)
+    return Groundwork(layout, Joiner(turner, ways, request))
+
+
+def plan_on(groundwork: Groundwork, request: PlanRequest) -> Plan:
+    """The plan on ground that was laid out for this request but for method, options, corner and order."""
+    layout, joiner = groundwork.layout, groundwork.joiner
+    method, options = _method(request)
     tasks = _tasks(layout, joiner, (method, options), request)
     if not tasks:
-        msg = f"a working width of {request.width:g} m is too wide for this field of {ground.area / 1e4:.2f} ha"
+        msg = f"a working width of {request.width:g} m is too wide for this field of {layout.ground.area / 1e4:.2f} ha"
         raise PlanError(msg)
     segments = tuple(joiner.segments(tasks))
     return Plan(
@@ -46,7 +75,7 @@ def plan_operation(polygon: Polygon, request: PlanRequest) -> Plan:
         spacing=layout.spacing,
         segments=segments,
         mainland=tuple(_rings(part) for part in layout.headland.mainland if layout.headland.laps),
-        costs=costs_of(segments, ground, layout.worked, layout.swaths_area, request),
+        costs=costs_of(segments, layout.ground, layout.worked, layout.swaths_area, request),
         warnings=tuple(_warnings(segments, layout, request)),
     )
 
@@ -64,22 +93,26 @@ def _tasks(
 ) -> list[Task]:
     """Laps and passes in driving order; passes have the lower numbers whichever comes first."""
     method, options = way
-    choices: list[list[Way]] = [
-        list(runs_of(cell, method.pass_order(len(cell.pieces), options))) for cell in layout.cells
-    ]
-    choices.extend(list(leftover_runs(each, method.pass_order(len(each.lines), options))) for each in layout.leftovers)
-    count = sum(len(ways[0].tasks(0)) for ways in choices)
+    choices = [runs_of(bundle, method.pass_order(len(bundle.lines), options)) for bundle in layout.bundles]
+    count = sum(len(bundle.lines) for bundle in layout.bundles)
     laps_first = method.laps_inward(options) if request.method is Method.SURROUNDING else request.laps_first
-    if not laps_first:
-        passes = _passes(choices, request, request.start)
-        last = passes[-1].last if passes else None
-        return passes + joiner.round_tasks(layout.headland.laps, last, count + 1, inward=False)
-    laps = joiner.round_tasks(layout.headland.laps, None, count + 1, inward=True)
-    start = (float(laps[-1].last[0]), float(laps[-1].last[1])) if laps else request.start
-    return laps + _passes(choices, request, start)
+    start = request.start if request.start is not None else _corner_of(layout.ground)
+    laps = layout.headland.laps
+    if laps_first:
+        first = joiner.round_tasks(laps, np.array(start), count + 1, inward=True)
+        last = (float(first[-1].last[0]), float(first[-1].last[1])) if first else request.start
+        return first + _passes(choices, request, last)
+    passes = _passes(choices, request, request.start)
+    return passes + joiner.round_tasks(laps, passes[-1].last if passes else np.array(start), count + 1, inward=False)
 
 
-def _passes(choices: Sequence[Sequence[Way]], request: PlanRequest, start: tuple[float, float] | None) -> list[Task]:
+def _corner_of(ground: Polygon) -> tuple[float, float]:
+    """The first corner of the boundary, where work begins when nobody says where."""
+    east, north = ground.exterior.coords[0][:2]
+    return east, north
+
+
+def _passes(choices: Sequence[Sequence[Run]], request: PlanRequest, start: tuple[float, float] | None) -> list[Task]:
     tasks: list[Task] = []
     for run in route(choices, request, start):
         tasks.extend(run.tasks(len(tasks)))

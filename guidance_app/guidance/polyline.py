@@ -91,6 +91,11 @@ class Polyline:
         """Heading where the line ends."""
         return float(self.table[-1, HEADING])
 
+    def at(self, along: float) -> tuple[float, float]:
+        """The place so many metres along it; its ends beyond the ends."""
+        east, north = (float(np.interp(along, self.table[:, ALONG], self.vertices[:, axis])) for axis in range(2))
+        return east, north
+
     def foot(self, east: float, north: float, near: float = 0.0, reach: float = math.inf) -> Foot:
         """The nearest point; with ``near`` only within ``reach`` metres along the line from there."""
         return Foot(*foot_on(self.table, self.ends, east, north, near, reach))

@@ -62,9 +62,17 @@ class Progress:
         """Metres of the pass worked so far."""
         return math.fsum(high - low for low, high in self._stretches.get(key, ()))
 
+    def spans(self, key: int) -> Stretches:
+        """The stretches worked so far, each from and to so many metres along the pass."""
+        return self._stretches.get(key, ())
+
     def stretches(self, key: int) -> int:
         """In how many stretches that is remembered."""
         return len(self._stretches.get(key, ()))
+
+    def open_keys(self) -> tuple[int, ...]:
+        """The passes that are begun and not done."""
+        return tuple(key for key in self._stretches if key not in self.done)
 
     @property
     def begun(self) -> bool:

@@ -89,6 +89,7 @@ class PlanRequest:
     square_corners: bool = True
     reverse_allowed: bool = True
     lengthen: bool = True
+    leftovers: bool = True
     last_pass: LastPass = LastPass.OVERLAP
     passable: frozenset[int] = frozenset()
     work_speed: float = 2.2

@@ -24,18 +24,15 @@ BoolArray = NDArray[np.bool_]
 
 
 class Room:
-    """The ground that a machine may cover: the field without its obstacles."""
+    """The ground that a machine may cover: the field without its obstacles, and ``touch`` metres beyond."""
 
-    def __init__(self, polygon: Polygon, body: Body) -> None:
-        self.ground: Polygon = polygon.buffer(TOUCH, quad_segs=2)
+    def __init__(self, polygon: Polygon, body: Body, touch: float = TOUCH) -> None:
+        self.ground: Polygon = polygon.buffer(touch, quad_segs=2)
         self.polygon = polygon
-        self.boundary = polygon.boundary
         self._outline = _outline(body)
         self.half_width = float(np.abs(self._outline[:, 1]).max())
-        self.reach = float(np.hypot(self._outline[:, 0], self._outline[:, 1]).max())
         shapely.prepare(self.ground)
         shapely.prepare(self.polygon)
-        shapely.prepare(self.boundary)
 
     def fits(self, moves: Manoeuvres) -> BoolArray:
         """For each existing candidate whether the whole machine stays inside all along."""
@@ -51,25 +48,23 @@ class Room:
 
     def fits_poses(self, poses: FloatArray) -> BoolArray:
         """The same for poses (C, K, 3); corners' traces between neighbouring poses are checked too."""
-        path = np.asarray(shapely.contains_xy(self.ground, poses[..., 0], poses[..., 1]))
-        inside: BoolArray = np.all(path, axis=1)
+        on_ground = np.asarray(shapely.contains_xy(self.ground, poses[..., 0], poses[..., 1]))
+        inside: BoolArray = np.all(on_ground, axis=1)
         corners = self._corners(poses[inside])
-        traces = np.asarray(shapely.covers(self.ground, shapely.linestrings(np.swapaxes(corners, 1, 2)))).all(axis=1)
-        inside[inside] = traces
-        outlines = np.asarray(shapely.covers(self.ground, shapely.linestrings(corners[traces]))).all(axis=1)
-        inside[inside] = outlines
+        inside[inside] = traces = self._covered(np.swapaxes(corners, 1, 2))
+        inside[inside] = self._covered(corners[traces])
+        return inside
+
+    def _covered(self, lines: FloatArray) -> BoolArray:
+        """For lines (C, L, N, 2) whether all L of each lie in the ground."""
+        covered = np.asarray(shapely.covers(self.ground, shapely.linestrings(lines)))
+        inside: BoolArray = np.all(covered, axis=1)
         return inside
 
     def fits_each(self, poses: FloatArray) -> BoolArray:
         """For single poses (M, 3) whether the machine stays inside there."""
         inside: BoolArray = np.asarray(shapely.covers(self.ground, shapely.linestrings(self._corners(poses))))
         return inside
-
-    def path_inside(self, poses: FloatArray) -> BoolArray:
-        """For poses (C, K, 3) whether the path itself stays inside."""
-        lines = shapely.linestrings(np.ascontiguousarray(poses[..., :2]))
-        covered: BoolArray = np.asarray(shapely.covers(self.polygon, lines))
-        return covered
 
     def missing(self, poses: FloatArray) -> FloatArray:
         """Metres by which the machine sticks out at its worst along poses (C, K, 3); 0 where it fits."""

@@ -16,6 +16,9 @@ __all__ = ["swath", "united"]
 GRID = 1e-4
 """Metres to which corners are snapped in a union."""
 
+FLAT = 0.01
+"""Metres to which a lap's line is smoothed before its swath is made: a union takes the longer the more points."""
+
 ARC = 8
 """Chords in a quarter circle where a swath bends."""
 
@@ -23,7 +26,7 @@ ARC = 8
 def swath(task: Task, width: float) -> BaseGeometry:
     """What one task works, with square ends."""
     line = shapely.linearrings(task.points) if task.closed else shapely.linestrings(task.points)
-    worked = shapely.buffer(line, width / 2, cap_style="flat", quad_segs=ARC)
+    worked = shapely.buffer(shapely.simplify(line, FLAT), width / 2, cap_style="flat", quad_segs=ARC)
     assert isinstance(worked, BaseGeometry)
     return worked
 

@@ -19,6 +19,8 @@ from guidance_app.guidance.offsets import LineOffsets
 from guidance_app.guidance.polyline import Foot, Polyline
 from guidance_app.guidance.progress import SHORTEST, Progress, enough
 from guidance_app.guidance.reading import ALIGNED, COME, STAY, Reader, Reading, Seen
+from guidance_app.guidance.replanning import First, Standing
+from guidance_app.guidance.resuming import carried_over, keys_of, rest_of
 from guidance_app.guidance.travel import TravelDirection, drives_against
 from guidance_app.model import FloatArray, Guidance, OffsetKind, OffsetRecord, Pass, Plan, Pose, TurnGuide
 
@@ -66,10 +68,12 @@ class Tracker:
         self._itinerary: Itinerary
         self._itinerary = PlanItinerary.of(family) if isinstance(family, Plan) else FamilyItinerary(family, field)
         self._spacing = spacing
+        self._behind = behind
         self._reader = Reader(spacing, behind)
         self._travel = TravelDirection()
         self._driven = DrivenPass() if isinstance(family, Learner) else None
-        self._progress = Progress(frozenset(key for number in done for key in self._itinerary.keys(number)))
+        finished = [each.number for each in family.finished] if isinstance(family, Plan) else []
+        self._progress = Progress(keys_of(self._itinerary, (*done, *finished)))
         self._choice = Choice(self._itinerary, spacing)
         self._continuity = Continuity()
         self._offsets = LineOffsets()
@@ -245,6 +249,53 @@ class Tracker:
             return False
         self._travel.turn_round()
         return True
+
+    # --- the rest planned again -------------------------------------------------------------------------------------
+
+    def standing(self, pose: Pose, point: tuple[float, float]) -> Standing:
+        """Where the guided point is at this pose, and the pass that is begun or taken: what ``replan`` begins with."""
+        heading = pose.heading if pose.heading_known else None
+        return Standing(*point, heading, first=self._first())
+
+    def _first(self) -> First | None:
+        line, against = self._line, bool(self._travel.against)
+        if line is None or line.key in self._progress.done:
+            return None
+        if spans := self._progress.spans(line.key):
+            return rest_of(line, spans, against=against, behind=self._behind)
+        if self._on or self._travel.wished:
+            return First(line.target.number, against)
+        return First(line.target.number) if self._choice.held else None
+
+    def follow(self, plan: Plan) -> None:
+        """Goes on along a plan of the rest of the same field, as ``replan`` makes it.
+
+        Offsets and all that is done stay. The pass on which the implement works stays the target, in the direction in
+        which it is driven; otherwise the plan's first one becomes it. ``ValueError`` for a plan without a pass.
+        """
+        itinerary = PlanItinerary.of(plan).shifted(self._offsets.total)
+        old, number = self._line, None if self._line is None else self._line.target.number
+        done = (*self.done, *(each.number for each in plan.finished))
+        self._progress = carried_over(self._progress, self._itinerary, itinerary, done)
+        self._itinerary = self._choice.itinerary = itinerary
+        self._next = self._done = self._line = None
+        here = next(iter(keys_of(itinerary, [] if number is None else [number])), None)
+        first = itinerary.start(0.0, 0.0, self._progress.done)
+        if old is not None and here is not None and (self._choice.engaged or here == first):
+            self._stay(old, itinerary, here)
+        elif first is not None:
+            self._go_to(first)
+
+    def _stay(self, old: GuideLine, itinerary: Itinerary, key: int) -> None:
+        """On along the same pass, which may be shorter now, or planned the other way round."""
+        line = itinerary.line(key)
+        assert line is not None, "the key is the itinerary's own"
+        before = old.polyline.foot(self._continuity.east, self._continuity.north)
+        foot = line.polyline.foot(self._continuity.east, self._continuity.north)
+        if drives_against(foot.direction, before.direction, None):
+            self._travel.flip()
+        self._line, self._foot = line, foot
+        self._work_from = None if self._work_from is None else foot.along
 
     # --- offsets ----------------------------------------------------------------------------------------------------
 

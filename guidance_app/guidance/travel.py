@@ -42,6 +42,11 @@ class TravelDirection:
         self.against = self.meant = not self.against
         self.wished = True
 
+    def flip(self) -> None:
+        """The same direction of travel on a line whose points come in the opposite order."""
+        self.against = None if self.against is None else not self.against
+        self.meant = None if self.meant is None else not self.meant
+
     def step(self, seen: Seen, foot: Foot, within: float) -> bool:
         """Whether the pass is driven against the order of its points; on it means within so many metres."""
         if self.meant is None:

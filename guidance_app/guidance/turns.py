@@ -6,6 +6,7 @@ the next and back up to it, or drive backward all the way. What fits is compared
 with the metres that are missing, on a path that itself stays inside.
 """
 
+import copy
 import itertools
 
 import numpy as np
@@ -95,11 +96,17 @@ class Turner:
         rows = len(words.start)
         return with_straights(words, np.zeros((rows, 1)), np.full((rows, 1), self.into))
 
-    def nearest(self, start: FloatArray, ends: FloatArray, beyond: FloatArray) -> tuple[int, Turn] | None:
-        """Of many end poses (M, 3) the one with the shortest turn, counting ``beyond`` (M,) metres more behind each."""
+    def within(self, room: Room) -> "Turner":
+        """The same machine in another room."""
+        other = copy.copy(self)
+        other.room = room
+        return other
+
+    def nearest(self, start: FloatArray, ends: FloatArray) -> tuple[int, Turn] | None:
+        """Of many end poses (M, 3) the one with the shortest turn."""
         moves = self._plain(np.tile(start, (len(ends), 1)), ends)
         words = len(moves.start) // len(ends)
-        total = moves.total + np.repeat(beyond, words)
+        total = moves.total
         order = np.argsort(total)
         order = order[np.isfinite(total[order])][:MOST_TRIED]
         for low in range(0, len(order), AT_ONCE):

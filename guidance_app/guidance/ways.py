@@ -33,7 +33,7 @@ REACH = 8.0
 CROP = 1.0
 """A metre over the mainland counts as much more than a metre on the headland."""
 
-EASE = 1.025
+EASE = 1.05
 """Turning radii of the circles round which a taut string bends."""
 
 MARGIN = 0.25

@@ -109,7 +109,11 @@ class PlanCosts:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """An operation's passes in driving order. ``mainland`` holds rings of shape (N, 2), outer first, a tuple a part."""
+    """An operation's passes in driving order. ``mainland`` holds rings of shape (N, 2), outer first, a tuple a part.
+
+    ``finished`` holds the passes and laps that were done before the rest was planned again; they are not driven, and
+    neither are they in the costs' distances.
+    """
 
     method: str
     direction: float
@@ -118,3 +122,4 @@ class Plan:
     mainland: tuple[tuple[FloatArray, ...], ...]
     costs: PlanCosts
     warnings: tuple[str, ...] = ()
+    finished: tuple[Segment, ...] = ()

@@ -1,0 +1,109 @@
+"""What one plan of one field comes to, measured from its segments alone."""
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from guidance_app.guidance.costs import joins_of
+from guidance_app.guidance.planning import PlanRequest, plan_operation
+from guidance_app.model import FloatArray, Plan, Segment, SegmentKind
+
+__all__ = ["Case", "case_of", "line_of", "mainland_of", "outside"]
+
+SAMPLE = 0.25
+"""Metres between the points of a path that must lie inside."""
+
+GRID = 1e-4
+"""Metres to which strips are snapped before they are joined; without it ground is lost between adjacent ones."""
+
+SHORTEST_CHORD = 1e-3
+"""Metres; the bend at a shorter chord says nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """One plan in numbers. ``tightest`` is its tightest bend in bends of the turning circle."""
+
+    field: str
+    mainland_worked: float
+    worked: float
+    twice: float
+    outside: int
+    joins: int
+    unfit: int
+    tightest: float
+    passes: int
+    idle_ratio: float
+    cpu_s: float
+
+
+def case_of(field: str, polygon: shapely.Polygon, request: PlanRequest) -> Case:
+    """Plans one field. Raises ``PlanError``."""
+    begin = time.process_time()
+    plan = plan_operation(polygon, request)
+    seconds = time.process_time() - begin
+    joins = joins_of(plan.segments)
+    swaths = [_swath(each, request.width) for each in plan.segments if each.implement_down]
+    union = shapely.union_all(swaths, grid_size=GRID)
+    return Case(
+        field=field,
+        mainland_worked=_mainland_worked(plan, request.width),
+        worked=union.intersection(polygon).area / polygon.area,
+        twice=(sum(each.area for each in swaths) - union.area) / union.area,
+        outside=sum(outside(line_of(each), polygon) for each in plan.segments),
+        joins=len(joins),
+        unfit=sum(not all(each.fits for each in join) for join in joins),
+        tightest=max(_tightest(each, request.radius) for each in plan.segments if each.fits),
+        passes=sum(each.kind is SegmentKind.PASS for each in plan.segments),
+        idle_ratio=plan.costs.idle_m / plan.costs.work_m,
+        cpu_s=seconds,
+    )
+
+
+def outside(line: shapely.LineString, polygon: shapely.Polygon) -> int:
+    """How many samples of a path lie outside the field or in an obstacle."""
+    shapely.prepare(polygon)
+    points = shapely.get_coordinates(shapely.segmentize(line, SAMPLE))
+    return int(np.count_nonzero(~shapely.contains_xy(polygon, points[:, 0], points[:, 1])))
+
+
+def line_of(segment: Segment) -> shapely.LineString:
+    """A segment as a line, a closed lap back to its first point."""
+    points = segment.points
+    return shapely.LineString(np.vstack([points, points[:1]]) if segment.closed else points)
+
+
+def mainland_of(plan: Plan) -> shapely.MultiPolygon:
+    """The mainland as one geometry, empty where there is none."""
+    return shapely.MultiPolygon([shapely.Polygon(part[0], part[1:]) for part in plan.mainland])
+
+
+def _mainland_worked(plan: Plan, width: float) -> float:
+    mainland = mainland_of(plan)
+    if mainland.is_empty:
+        return 1.0
+    passes: Sequence[shapely.Geometry] = [
+        _swath(each, width) for each in plan.segments if each.kind is SegmentKind.PASS
+    ]
+    return float(shapely.union_all(passes, grid_size=GRID).intersection(mainland).area / mainland.area)
+
+
+def _swath(segment: Segment, width: float) -> shapely.Polygon:
+    line = shapely.linearrings(segment.points) if segment.closed else shapely.linestrings(segment.points)
+    swath = shapely.buffer(line, width / 2, cap_style="flat")
+    assert isinstance(swath, shapely.Polygon)
+    return swath
+
+
+def _tightest(segment: Segment, radius: float) -> float:
+    points: FloatArray = np.vstack([segment.points, segment.points[:2]]) if segment.closed else segment.points
+    steps = np.diff(points, axis=0)
+    lengths = np.hypot(steps[:, 0], steps[:, 1])
+    yaw = np.arctan2(steps[:, 1], steps[:, 0])
+    turn = np.abs(np.mod(np.diff(yaw) + np.pi, 2 * np.pi) - np.pi)
+    chord = (lengths[1:] + lengths[:-1]) / 2
+    bends = turn[chord > SHORTEST_CHORD] / chord[chord > SHORTEST_CHORD]
+    return float(radius * bends.max(initial=0.0))
