@@ -127,7 +127,7 @@ def test_in_work_there_is_no_way_to_where_the_tractor_is() -> None:
     begun = works(plan.segments)[0]
     east, north = begun.points[-1] - begun.points[0]
     place = (float(begun.points.mean(axis=0)[0]), float(begun.points.mean(axis=0)[1]))
-    standing = Standing(*place, math.atan2(east, north), First(begun.number, False, place))
+    standing = Standing(*place, math.atan2(east, north), First(begun.number, backward=False, worked_to=place))
     rest = replan(plan, (), standing, FIELD, REQUESTS["round trip"])
     assert rest.segments[0].kind is SegmentKind.PASS
 

@@ -26,7 +26,7 @@ def driven(tracker: Tracker, works: list[Segment], part: float = 1.0) -> tuple[P
         points = np.vstack([segment.points, segment.points[:1]]) if segment.closed else segment.points
         poses = list(poses_along(points, start=t))
         for pose in poses[: round(part * len(poses))] if place == len(works) - 1 else poses:
-            guidance = tracker.step(pose, (pose.east, pose.north), True)
+            guidance = tracker.step(pose, (pose.east, pose.north), working=True)
             assert guidance is not None
             last, t = (pose, guidance), pose.t + 0.1
     assert last is not None
@@ -41,11 +41,11 @@ def test_in_the_middle_of_a_pass_the_guidance_goes_on_without_a_jump() -> None:
     tracker = Tracker(PLAN, PLAN.spacing)
     pose, before = driven(tracker, WORKS[:3], 0.5)
     assert tracker.shift(0.4)
-    before = tracker.step(pose, (pose.east, pose.north), True)
+    before = tracker.step(pose, (pose.east, pose.north), working=True)
     assert before is not None
     rest = rest_of(tracker, pose)
     tracker.follow(rest)
-    after = tracker.step(pose, (pose.east, pose.north), True)
+    after = tracker.step(pose, (pose.east, pose.north), working=True)
     assert after is not None
     assert after.target.number == before.target.number == WORKS[2].number
     assert after.cross_track == pytest.approx(before.cross_track, abs=MILLIMETRE)
@@ -63,7 +63,7 @@ def test_driven_against_its_plan_a_pass_is_finished_that_way() -> None:
     pose, before = driven(tracker, back, 0.6)
     assert before.against
     tracker.follow(rest_of(tracker, pose))
-    after = tracker.step(pose, (pose.east, pose.north), True)
+    after = tracker.step(pose, (pose.east, pose.north), working=True)
     assert after is not None
     assert not after.against
     assert after.cross_track == pytest.approx(before.cross_track, abs=MILLIMETRE)
@@ -87,7 +87,7 @@ def test_a_pass_taken_is_the_target_and_the_plan_leads_there() -> None:
     assert standing.first == First(WORKS[6].number)
     rest = replan(PLAN, tracker.done, standing, FIELD, REQUEST)
     tracker.follow(rest)
-    after = tracker.step(pose, (pose.east, pose.north), False)
+    after = tracker.step(pose, (pose.east, pose.north), working=False)
     assert after is not None
     assert after.target.number == WORKS[6].number
     assert rest.segments[0].number == WORKS[6].number
@@ -98,7 +98,7 @@ def test_turned_round_by_the_driver_a_pass_is_planned_that_way() -> None:
     tracker = Tracker(PLAN, PLAN.spacing)
     first = WORKS[0].points
     pose = a_pose(0.0, float(first[-1, 0]), float(first[-1, 1]))
-    tracker.step(pose, (pose.east, pose.north), False)
+    tracker.step(pose, (pose.east, pose.north), working=False)
     assert tracker.reverse()
     rest = rest_of(tracker, pose)
     begun = next(each for each in rest.segments if each.implement_down)
@@ -111,7 +111,7 @@ def test_after_a_crash_a_new_tracker_knows_what_is_done() -> None:
     pose, guidance = driven(tracker, WORKS[:4])
     rest = rest_of(tracker, pose)
     again = Tracker(rest, rest.spacing)
-    after = again.step(pose, (pose.east, pose.north), False)
+    after = again.step(pose, (pose.east, pose.north), working=False)
     assert after is not None
     assert after.done == guidance.done
     assert after.target.number not in guidance.done
@@ -125,7 +125,7 @@ def test_a_lap_half_worked_is_gone_on_with() -> None:
     pose, before = driven(tracker, [lap], 0.4)
     rest = replan(plan, (), tracker.standing(pose, (pose.east, pose.north)), FIELD, REQUEST)
     tracker.follow(rest)
-    after = tracker.step(pose, (pose.east, pose.north), True)
+    after = tracker.step(pose, (pose.east, pose.north), working=True)
     assert after is not None
     assert after.target.number == before.target.number
     assert not after.target.closed
