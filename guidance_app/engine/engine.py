@@ -24,6 +24,7 @@ from guidance_app.estimation.filters import make_filter
 from guidance_app.estimation.prediction import Predictor
 from guidance_app.estimation.reference_point import ImplementPoint, measurement_from_fix
 from guidance_app.geodesy import FieldFrame
+from guidance_app.language import sentence
 from guidance_app.model import (
     RECEIVER,
     ApplyRollZero,
@@ -318,7 +319,7 @@ class Engine:
             self._state, self._measuring = self._before, None
             return None
         if self._job.receiver.measuring_time <= 0.0:
-            return "The receiver's measuring time is 0 s: there is nothing to measure."
+            return sentence("The receiver's measuring time is 0 s: there is nothing to measure.")
         place = command.latitude_deg, command.longitude_deg
         self._start_point = None if place[0] is None or place[1] is None else (place[0], place[1])
         self._before = SessionState.PAUSED if self._state is SessionState.PAUSED else SessionState.DRIVING
@@ -357,14 +358,14 @@ class Engine:
             case BeginRollZero():
                 after = roll_drives.begun(self._tractor, self._raw_pose)
             case _ if drives is None:
-                after = "No calibration is under way: begin one."
+                after = sentence("No calibration is under way: begin one.")
             case NextRollZeroDrive():
                 after = drives.turned()
             case FinishRollZero():
                 after = drives.finished(self._tractor)
             case ApplyRollZero():
                 if drives.found is None:
-                    return "Nothing has been found yet: finish both drives first."
+                    return sentence("Nothing has been found yet: finish both drives first.")
                 self._tractor = self._tractor.model_copy(update={"roll_zero_deg": drives.found.roll_zero_deg})
                 after = None
             case _:

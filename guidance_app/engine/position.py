@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from guidance_app.estimation.filter import Start
 from guidance_app.estimation.initialisation import Initialisation
 from guidance_app.geodesy import FieldFrame
+from guidance_app.language import sentence
 from guidance_app.model import Initialised, Initialising, Measurement, OffsetKind, OffsetRecord, Pose
 
 __all__ = ["FARTHEST", "Measuring", "Position", "begun"]
@@ -41,14 +42,16 @@ class Position:
     def on_the_mark(self, at: float, place: Place, raw: Pose | None) -> "Position | str":
         """Moved so that the reference point is at ``place``; a sentence when that cannot be."""
         if raw is None:
-            return "Not yet: there is no position that a mark could put right."
+            return sentence("Not yet: there is no position that a mark could put right.")
         before = self.without(OffsetKind.MARK)
         east, north = (metres[0] - metres[1] for metres in zip(place, before.total, strict=True))
         record = OffsetRecord(OffsetKind.MARK, at, east=east - raw.east, north=north - raw.north)
         far = math.hypot(record.east, record.north)
         if far > FARTHEST:
-            return (
-                f"The mark is {far:.0f} m away: more than {FARTHEST:.0f} m is another point. Choose the one you are on."
+            return sentence(
+                "The mark is {far:.0f} m away: more than {most:.0f} m is another point. Choose the one you are on.",
+                far=far,
+                most=FARTHEST,
             )
         return Position((*before.records, record))
 
@@ -56,9 +59,10 @@ class Position:
         """With the correction of a known start point, instead of all that was; a sentence when it is too far."""
         far = math.hypot(start.east, start.north)
         if far > FARTHEST:
-            return (
-                f"The start point is {far:.0f} m away: more than {FARTHEST:.0f} m is another point."
-                " Choose the one you are on and measure again."
+            return sentence(
+                "The start point is {far:.0f} m away: more than {most:.0f} m is another point. Choose yours.",
+                far=far,
+                most=FARTHEST,
             )
         return Position((OffsetRecord(OffsetKind.INITIALISATION, at, east=start.east, north=start.north),))
 

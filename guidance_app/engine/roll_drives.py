@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 from guidance_app.documents import Tractor
 from guidance_app.estimation.roll_zero import SHORTEST, CalibrationError, roll_zero
+from guidance_app.language import sentence
 from guidance_app.model import Pose, RollZeroFound, RollZeroProgress, RollZeroStage
 
 __all__ = ["RollDrives", "begun"]
@@ -58,22 +59,26 @@ class RollDrives:
     def turned(self) -> "RollDrives | str":
         """On to the way back; a sentence when the first drive is too short."""
         if self.stage is not RollZeroStage.THERE:
-            return "The second drive has already begun."
+            return sentence("The second drive has already begun.")
         if self.there.metres < SHORTEST:
-            return f"The first drive is {self.there.metres:.0f} m long; {SHORTEST:.0f} m are needed. Drive on."
+            return sentence(
+                "The first drive is {metres:.0f} m long; {needed:.0f} m are needed. Drive on.",
+                metres=self.there.metres,
+                needed=SHORTEST,
+            )
         return replace(self, stage=RollZeroStage.BACK)
 
     def finished(self, tractor: Tractor) -> "RollDrives | str":
         """With what the two drives say; a sentence when they say nothing. They may then be driven on."""
         if self.stage is not RollZeroStage.BACK:
-            return "Drive the same line back first."
+            return sentence("Drive the same line back first.")
         try:
             found = roll_zero(list(self.there.poses), list(self.back.poses), tractor.antenna_height)
         except CalibrationError as error:
-            return f"No roll zero: {error}."
+            return sentence("No roll zero: {reason}.", reason=error.args[0])
         zero = tractor.roll_zero_deg + found.correction_deg
         if abs(zero) > LARGEST_DEG:
-            return f"A roll zero of {zero:.1f} degrees is no mounting: level the sensor and begin again."
+            return sentence("A roll zero of {zero:.1f}° is no mounting: level the sensor and begin again.", zero=zero)
         result = RollZeroFound(zero, found.correction_deg, found.sigma_deg, found.metres)
         return replace(self, stage=RollZeroStage.FOUND, found=result)
 
@@ -86,7 +91,9 @@ class RollDrives:
 def begun(tractor: Tractor, raw: Pose | None) -> RollDrives | str:
     """A calibration from now on; a sentence when there is nothing to calibrate."""
     if tractor.antenna_height < 0.5:
-        return f"An antenna {tractor.antenna_height:g} m above the ground hardly moves with the roll."
+        return sentence(
+            "An antenna {height:g} m above the ground hardly moves with the roll.", height=tractor.antenna_height
+        )
     if raw is None or raw.roll is None:
-        return "No roll sensor speaks: there is nothing to calibrate."
+        return sentence("No roll sensor speaks: there is nothing to calibrate.")
     return RollDrives()

@@ -1,6 +1,6 @@
 """What is possible in which state of the session, and the sentence that says why something is not. Pure."""
 
-from guidance_app.language import message, sentence
+from guidance_app.language import message
 from guidance_app.model import (
     ApplyRollZero,
     BeginInitialisation,
@@ -52,4 +52,4 @@ WHY = {
 
 def why_not(state: SessionState, command: Command) -> str | None:
     """The sentence that says why the command changes nothing in this state; None when it may act."""
-    return None if state in POSSIBLE.get(type(command), NOT_ENDED) else sentence(WHY[state])
+    return None if state in POSSIBLE.get(type(command), NOT_ENDED) else WHY[state]

@@ -17,6 +17,7 @@ from guidance_app.guidance.straight import StraightStretch
 from guidance_app.guidance.tracking import Tracker
 from guidance_app.guidance.trail import TrackTrail
 from guidance_app.guidance.work import WorkSwitch
+from guidance_app.language import message, sentence
 from guidance_app.model import (
     Command,
     DropOffset,
@@ -38,7 +39,7 @@ from guidance_app.model import (
 
 __all__ = ["WorkDone"]
 
-TOO_FAR = "The line cannot be moved there: it would leave its place, or be moved by more than 1000 m."
+TOO_FAR = message("The line cannot be moved there: it would leave its place, or be moved by more than 1000 m.")
 
 SHOW_AGAIN_AFTER = 6
 """Without a field the shown lines are renewed when the target is so many passes from their middle."""
@@ -154,7 +155,9 @@ class WorkDone:
     def _switch_section(self, command: SetSection) -> str | None:
         count = self._job.implement.sections
         if command.number > count:
-            return f"There is no section {command.number}: the implement has {count}."
+            return sentence(
+                "There is no section {number}: the implement has {count}.", number=command.number, count=count
+            )
         bit = 1 << (command.number - 1)
         self._mask = self._mask | bit if command.on else self._mask & ~bit
         self._sections = tuple(bool(self._mask >> place & 1) for place in range(count))
@@ -163,7 +166,7 @@ class WorkDone:
     def _line_command(self, command: Command, arrival: float) -> str | None:
         tracker = self._tracker
         if tracker is None:
-            return "There is no line yet: drive a first straight stretch."
+            return sentence("There is no line yet: drive a first straight stretch.")
         refused = self._obey(tracker, command, arrival)
         if refused is not None:
             return refused
@@ -173,13 +176,17 @@ class WorkDone:
         return None
 
     def _obey(self, tracker: Tracker, command: Command, arrival: float) -> str | None:
+        otherwise: str
         match command:
             case TakePass():
-                done, otherwise = tracker.take(command.number), f"There is no line {command.number}."
+                done, otherwise = (
+                    tracker.take(command.number),
+                    sentence("There is no line {number}.", number=command.number),
+                )
             case SkipPass():
-                done, otherwise = tracker.skip(), "There is no other line to go on with."
+                done, otherwise = tracker.skip(), message("There is no other line to go on with.")
             case ReverseDirection():
-                done, otherwise = tracker.reverse(), "There is no line yet to be driven the other way."
+                done, otherwise = tracker.reverse(), message("There is no line yet to be driven the other way.")
             case Nudge():
                 done, otherwise = tracker.shift(command.metres, command.kind, arrival), TOO_FAR
             case LineHere():
@@ -188,7 +195,7 @@ class WorkDone:
             case DropOffset():
                 done, otherwise = tracker.drop(command.kind), TOO_FAR
             case ReplanRest():
-                done, otherwise = False, "There is no plan: lines are driven as they come."
+                done, otherwise = False, message("There is no plan: lines are driven as they come.")
             case _:
                 msg = f"{type(command).__name__} is not a command about lines"
                 raise TypeError(msg)

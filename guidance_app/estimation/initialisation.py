@@ -14,6 +14,7 @@ import numpy as np
 from guidance_app.estimation.filter import Start
 from guidance_app.estimation.receiver_noise import DEFAULT_CELL, noise_of
 from guidance_app.estimation.reference_point import offset_point
+from guidance_app.language import sentence
 from guidance_app.model import Measurement
 
 __all__ = ["Initialisation", "Progress"]
@@ -82,18 +83,20 @@ class Initialisation:
 
     def _moving(self, z: Measurement) -> str | None:
         if z.speed is not None and z.speed > MOVING_SPEED:
-            return f"the tractor moves at {3.6 * z.speed:.1f} km/h: stand still at the start point"
+            return sentence(
+                "the tractor moves at {speed:.1f} km/h: stand still at the start point", speed=3.6 * z.speed
+            )
         if z.yaw_rate is not None and abs(z.yaw_rate) > TURNING_RATE:
-            return "the tractor turns: stand still at the start point"
+            return sentence("the tractor turns: stand still at the start point")
         if not self.seen:
             return None
         first = self.seen[0]
         away = math.hypot(z.east - first.east, z.north - first.north)
         allowed = WANDER + max(z.cell or (DEFAULT_CELL,)) + 4.0 * noise_of(z).white
         if away > allowed:
-            return f"the fix has moved by {away:.1f} m: stand still at the start point"
+            return sentence("the fix has moved by {away:.1f} m: stand still at the start point", away=away)
         if z.quality != first.quality:
-            return "the kind of fix has changed: measuring again"
+            return sentence("the kind of fix has changed: measuring again")
         return None
 
     def _start(self) -> Start:

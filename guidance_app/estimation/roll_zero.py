@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from guidance_app.angles import wrap_pi
+from guidance_app.language import sentence
 from guidance_app.model import FloatArray, Pose
 
 __all__ = ["SHORTEST", "CalibrationError", "RollZero", "roll_zero"]
@@ -43,23 +44,29 @@ def roll_zero(there: list[Pose], back: list[Pose], antenna_height: float) -> Rol
     mounting has.
     """
     if antenna_height < 0.5:
-        msg = f"an antenna {antenna_height:g} m above the ground hardly moves with the roll: nothing to calibrate"
+        msg = sentence(
+            "an antenna {height:g} m above the ground hardly moves with the roll: nothing to calibrate",
+            height=antenna_height,
+        )
         raise CalibrationError(msg)
     out, home = _track(there), _track(back)
     direction = _direction(out)
     turned = wrap_pi(_direction(home) - direction)
     if abs(abs(turned) - math.pi) > OPPOSITE:
-        msg = f"the second drive runs {abs(math.degrees(turned)):.0f} degrees to the first: drive the same line back"
+        msg = sentence(
+            "the second drive runs {angle:.0f} degrees to the first: drive the same line back",
+            angle=abs(math.degrees(turned)),
+        )
         raise CalibrationError(msg)
     gaps = _gaps(out, home, direction)
     metres = len(gaps) * BIN
     if metres < SHORTEST:
-        msg = f"the two drives share {metres:.0f} m; {SHORTEST:.0f} m are needed"
+        msg = sentence("the two drives share {metres:.0f} m; {needed:.0f} m are needed", metres=metres, needed=SHORTEST)
         raise CalibrationError(msg)
     # each track lies to its own left by h sin(error): the second, seen from the first, to the right
     shift = 0.5 * float(np.mean(gaps))
     if abs(shift) > antenna_height * math.sin(LARGEST):
-        msg = f"the two drives lie {2 * abs(shift):.2f} m apart: drive in the same wheel tracks"
+        msg = sentence("the two drives lie {apart:.2f} m apart: drive in the same wheel tracks", apart=2 * abs(shift))
         raise CalibrationError(msg)
     independent = max(metres / 10.0, 1.0)  # a driver's correction lasts about ten metres
     scatter = 0.5 * float(np.std(gaps)) / math.sqrt(independent)
@@ -71,7 +78,7 @@ def _track(poses: list[Pose]) -> FloatArray:
     """Shape (N, 2): east, north, of the moving forward part."""
     points = [(p.east, p.north) for p in poses if p.heading_known and not p.standing and p.speed > 0.0]
     if len(points) < 10:
-        msg = "a drive holds hardly any fix of a moving tractor"
+        msg = sentence("a drive holds hardly any fix of a moving tractor")
         raise CalibrationError(msg)
     return np.array(points)
 
