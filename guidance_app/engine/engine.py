@@ -123,8 +123,17 @@ class Engine:
     @property
     def wake_at(self) -> float | None:
         """When a half-received epoch wants to be closed, on the session clock; None when there is none."""
-        waiting = [one.wake_at for one in self._decoders.values() if one.wake_at is not None]
-        return min(waiting, default=None)
+        close = self.close_epoch
+        return None if close is None else close.arrival
+
+    @property
+    def close_epoch(self) -> Chunk | None:
+        """The empty chunk that closes the half-received epoch which waits longest, at ``wake_at`` or later."""
+        waiting = [(one.wake_at, link) for link, one in self._decoders.items() if one.wake_at is not None]
+        if not waiting:
+            return None
+        at, link = min(waiting)
+        return Chunk(at, b"", link)
 
     def fork(self, generation: int | None = None) -> "Engine":
         """An independent copy; with a new ``generation`` its readers see that time has jumped."""

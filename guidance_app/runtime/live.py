@@ -5,6 +5,7 @@ import queue
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 from guidance_app.documents import Job
 from guidance_app.engine import Engine
@@ -86,8 +87,9 @@ class LiveSession:
                 event = self._events.get(timeout=self._patience())
             except queue.Empty:
                 self._publisher.tell()
-                if self._engine.wake_at is not None and self._engine.wake_at <= self.now():
-                    self._step(Chunk(self.now(), b""))
+                close = self._engine.close_epoch
+                if close is not None and close.arrival <= self.now():
+                    self._step(replace(close, arrival=self.now()))
                 continue
             if event is not None:
                 self._step(event)

@@ -8,6 +8,7 @@ and not about the work, stays as it was set last.
 
 import bisect
 import logging
+import math
 import queue
 import threading
 from collections.abc import Callable
@@ -144,7 +145,7 @@ class ReplaySession:
 
     def _run(self) -> None:
         while not self._pacer.closed:
-            due = self._pacer.next(self._publisher.least_interval if self._publisher.pending else None)
+            due = self._pacer.next(self._patience())
             match due:
                 case Chunk():
                     self.tap.hear(due)
@@ -154,12 +155,31 @@ class ReplaySession:
                 case None:
                     self._publisher.tell()
             self._take_posted()
+            self._close_epoch(self._here())
             self._note_the_end()
+
+    def _patience(self) -> float | None:
+        """How long nothing needs to be done but what the pacer has: to the hearers' turn or the close of an epoch."""
+        waits = [self._publisher.least_interval] if self._publisher.pending else []
+        wake_at, speed = self._engine.wake_at, self._pacer.speed
+        if wake_at is not None and self._pacer.playing and math.isfinite(speed):
+            waits.append(max((wake_at - self._pacer.position) / speed, 0.001))
+        return min(waits, default=None)
+
+    def _close_epoch(self, until: float) -> None:
+        """Closes a half-received epoch whose time is over, at the instant at which a live session would."""
+        chunks = self._log.chunks
+        following = chunks[self._index].arrival if self._index < len(chunks) else math.inf
+        while (close := self._engine.close_epoch) is not None and close.arrival <= until:
+            if close.arrival >= following:
+                return
+            self._step(close)
 
     def _take_posted(self) -> None:
         """Takes what was posted, here; while a jump waits, there."""
         while not (self._pacer.sought or self._posted.empty()):
             given = Commanded(self._here(), self._posted.get())
+            self._close_epoch(given.arrival)
             if isinstance(given.command, SetLookAhead):
                 self._look_ahead = given.command
             else:
@@ -182,8 +202,11 @@ class ReplaySession:
     def _advance(self, chunk: Chunk) -> None:
         """One chunk, after the commands that were given before it."""
         while self._given < len(self._commands) and self._commands[self._given].arrival <= chunk.arrival:
+            given = self._commands[self._given]
             self._given += 1
-            self._step(self._commands[self._given - 1])
+            self._close_epoch(given.arrival)
+            self._step(given)
+        self._close_epoch(chunk.arrival)
         self._index += 1
         self._step(chunk)
         last = self._checkpoints[-1]

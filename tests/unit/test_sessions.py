@@ -171,3 +171,55 @@ def test_a_log_is_not_written_to(drive: FileLog, session: ReplaySession, tmp_pat
     session.start()
     session.close()
     assert not list(tmp_path.iterdir())
+
+
+# --- epochs that stay incomplete -----------------------------------------------------------------------------------
+
+
+def without_its_last_sentence(chunks: list[Chunk], every: int) -> list[Chunk]:
+    """Now and then the course sentence of an epoch is lost, so that its end is only told by time."""
+    return [
+        Chunk(
+            one.arrival, b"".join(one.data.splitlines(keepends=True)[:-1]) if place % every == every - 1 else one.data
+        )
+        for place, one in enumerate(chunks)
+    ]
+
+
+def test_a_replay_closes_an_incomplete_epoch_in_its_own_interval(tmp_path: Path) -> None:
+    chunks = without_its_last_sentence(path_chunks(up_and_down(passes=1)), every=7)
+    path = tmp_path / "lossy.nmea"
+    path.write_bytes(b"".join(chunk.data for chunk in chunks))
+    session = ReplaySession(a_job(), load_log(path), speed=float("inf"))
+    late = []
+
+    def hear(snapshot: Snapshot) -> None:
+        if snapshot.fix is not None and snapshot.link.status is LinkStatus.FIX:
+            late.append(snapshot.arrival - snapshot.fix.arrival)
+
+    hearing = Hearing()
+    session.subscribe(hear)
+    session.subscribe(hearing)
+    session.start()
+    try:
+        last = hearing.wait(ended)
+    finally:
+        session.close()
+    assert last.link.fixes == len(chunks)
+    assert max(late) < 0.2
+
+
+def test_a_replay_on_the_clock_says_the_same_as_one_at_full_speed(tmp_path: Path) -> None:
+    chunks = without_its_last_sentence(path_chunks(up_and_down(passes=1))[:60], every=7)
+    path = tmp_path / "lossy.nmea"
+    path.write_bytes(b"".join(chunk.data for chunk in chunks))
+    told = []
+    for speed in (float("inf"), 50.0):
+        session = ReplaySession(a_job(), load_log(path), speed=speed)
+        hearing = Hearing()
+        session.subscribe(hearing)
+        session.start()
+        told.append(hearing.wait(ended))
+        session.close()
+    assert told[0].pose == told[1].pose
+    assert told[0].sequence == told[1].sequence
