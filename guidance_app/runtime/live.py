@@ -10,7 +10,7 @@ from dataclasses import replace
 from guidance_app.documents import Job
 from guidance_app.engine import Engine
 from guidance_app.estimation.filter import FilterSettings
-from guidance_app.model import Chunk, Command, Commanded, Event, Snapshot, SourceDown
+from guidance_app.model import Command, Commanded, Event, Snapshot, SourceDown
 from guidance_app.runtime.session import Hearer, Publisher
 from guidance_app.runtime.tap import Tap
 from guidance_app.sources import Source
