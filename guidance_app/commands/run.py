@@ -1,8 +1,10 @@
-"""``guidance-app run``: the console on a live source."""
+"""``guidance-app run``: the console on a live source, recorded into the data folder."""
 
 import argparse
+from pathlib import Path
 
 from guidance_app.commands.options import (
+    UseError,
     add_console_options,
     add_data_option,
     add_job_options,
@@ -11,8 +13,9 @@ from guidance_app.commands.options import (
     job_from_options,
 )
 from guidance_app.commands.serving import serve
-from guidance_app.runtime import LiveSession
-from guidance_app.sources import SOURCES, open_source
+from guidance_app.runtime import LiveSession, recorded_session, resumed_session
+from guidance_app.sources import SOURCES, Source, open_source
+from guidance_app.store.recordings_list import Resumable, resumable
 
 __all__ = ["add_parser", "run"]
 
@@ -30,6 +33,9 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         metavar="URI",
         help=f"drive at once from here: {known} (without it the console opens where operations are started)",
     )
+    parser.add_argument(
+        "--resume", action="store_true", help="go on with the last drive, which was cut off, with its documents"
+    )
     add_job_options(parser)
     add_data_option(parser)
     add_console_options(parser)
@@ -40,7 +46,33 @@ def run(arguments: argparse.Namespace) -> int:
     """Drives until stopped."""
     data = chosen_data_folder(arguments)
     if arguments.source is None:
+        if arguments.resume:
+            msg = "--resume goes on with a drive: name its receiver by --source"
+            raise UseError(msg)
         return serve(None, arguments, data, "nothing is driven yet: choose at the screen")
     source = open_source(arguments.source)
-    session = LiveSession(job_from_options(arguments), source, arguments.filter, filter_settings(arguments.settings))
+    found = resumable(data)
+    if arguments.resume:
+        session = _resumed(found, source, data)
+    else:
+        if found is not None:
+            print(f"{_told(found)}: go on with it by --resume")
+        job = job_from_options(arguments)
+        settings = filter_settings(arguments.settings)
+        session = recorded_session(data, job, source, arguments.filter, settings)
     return serve(session, arguments, data, f"reading {source.description}")
+
+
+def _resumed(found: Resumable | None, source: Source, data: Path) -> LiveSession:
+    if found is None:
+        msg = f"no drive was cut off in {data}: leave --resume out"
+        raise UseError(msg)
+    print(f"{_told(found)}; taking it again")
+    return resumed_session(found.path, source)
+
+
+def _told(found: Resumable) -> str:
+    where = "" if found.field is None else f" on '{found.field}'"
+    at = "" if found.pass_number is None else f", at pass {found.pass_number}"
+    of = "" if found.passes_planned is None else f", {found.passes_done} of {found.passes_planned} passes done"
+    return f"a drive of {found.duration_s / 60:.0f} min{where}{at}{of} was cut off"

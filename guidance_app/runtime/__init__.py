@@ -1,7 +1,9 @@
-"""Threads, queue and clock around one engine: the live session and the replay under a person's hands."""
+"""Threads, queue and clock around one engine: the live session, recorded, and the replay under a person's hands."""
 
 from guidance_app.runtime.live import LiveSession
 from guidance_app.runtime.manager import SessionManager
+from guidance_app.runtime.recorded import recorded_session, resumed_session
+from guidance_app.runtime.recorder import Recorder, new_recording
 from guidance_app.runtime.replay import ReplayControl, ReplaySession, ReplayState
 from guidance_app.runtime.session import Session
 from guidance_app.runtime.tap import RawStream, Tap
@@ -9,10 +11,14 @@ from guidance_app.runtime.tap import RawStream, Tap
 __all__ = [
     "LiveSession",
     "RawStream",
+    "Recorder",
     "ReplayControl",
     "ReplaySession",
     "ReplayState",
     "Session",
     "SessionManager",
     "Tap",
+    "new_recording",
+    "recorded_session",
+    "resumed_session",
 ]

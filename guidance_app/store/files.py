@@ -27,6 +27,7 @@ __all__ = [
     "safe_stem",
     "sync_file",
     "sync_folder",
+    "try_lock",
     "why",
     "write_atomically",
     "write_file",
@@ -210,6 +211,14 @@ if sys.platform == "win32":
     def _lock(descriptor: int) -> None:
         msvcrt.locking(descriptor, msvcrt.LK_LOCK, 1)
 
+    def try_lock(descriptor: int) -> bool:
+        """Locks the file unless somebody has it; does not wait. The lock goes with the descriptor."""
+        try:
+            msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+        except OSError:
+            return False
+        return True
+
     def sync_folder(folder: Path) -> None:
         """Windows has no such call; NTFS journals the rename itself."""
 
@@ -218,6 +227,14 @@ else:
 
     def _lock(descriptor: int) -> None:
         fcntl.flock(descriptor, fcntl.LOCK_EX)
+
+    def try_lock(descriptor: int) -> bool:
+        """Locks the file unless somebody has it; does not wait. The lock goes with the descriptor."""
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return False
+        return True
 
     def sync_folder(folder: Path) -> None:
         """Returns when the names in the folder are on the disk."""

@@ -1,0 +1,19 @@
+"""One step of an engine whatever happens: a failure inside is a snapshot that says so, and the same in every replay."""
+
+import logging
+
+from guidance_app.engine import Engine
+from guidance_app.model import Event, Snapshot
+
+__all__ = ["stepped"]
+
+log = logging.getLogger(__name__)
+
+
+def stepped(engine: Engine, event: Event) -> Snapshot:
+    """The snapshot after one more event. Never raises."""
+    try:
+        return engine.step(event)
+    except Exception as error:
+        log.exception("the engine failed on %s", type(event).__name__)
+        return engine.failed(event.arrival, str(error))

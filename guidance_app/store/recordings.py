@@ -1,0 +1,279 @@
+"""Recordings as folders: which there are, what is in one, and which was cut off and can be gone on with.
+
+``recordings/<start>-<field>/`` holds ``session.json`` (all documents in use), ``events.jsonl`` while it grows and
+``events.jsonl.gz`` once it has ended, and ``summary.json``, written every few seconds and at the end, so that a list
+of recordings reads no events. A recording also opens from a zip of such a folder.
+"""
+
+import gzip
+import hashlib
+import io
+import json
+import zipfile
+import zlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from guidance_app.documents import Document, FieldDocument, Implement, Job, Operation, Receiver, Settings, Tractor
+from guidance_app.recording import FORMAT, Lines, RecordedDrive, RecordingError, RecordingMeta, read_lines
+from guidance_app.store.files import StoreError, read_bounded, why
+from guidance_app.store.migrations import BrokenDocumentError, NewerDocumentError, decoded
+
+__all__ = [
+    "EVENTS",
+    "PACKED",
+    "RECORDINGS",
+    "SESSION",
+    "SUMMARY",
+    "RecordingFiles",
+    "RecordingSummary",
+    "is_recording",
+    "open_recording",
+    "opened",
+    "packed",
+    "read_recording",
+    "read_summary",
+]
+
+RECORDINGS = "recordings"
+SESSION = "session.json"
+EVENTS = "events.jsonl"
+PACKED = "events.jsonl.gz"
+SUMMARY = "summary.json"
+MOST_BYTES = 1 << 30
+"""Eight hours at 10 Hz have about 70 million bytes of events."""
+
+_JOB: Mapping[str, type[Document]] = MappingProxyType(
+    {
+        "tractor": Tractor,
+        "implement": Implement,
+        "receiver": Receiver,
+        "field": FieldDocument,
+        "operation": Operation,
+        "settings": Settings,
+    }
+)
+_NEEDED = ("tractor", "implement", "receiver", "settings")
+
+
+class RecordingSummary(BaseModel):
+    """What a list shows of a recording without opening it. ``ended`` is False while it is driven or was cut off.
+
+    Times are ISO 8601 with Z by the machine's clock; ``pass_number`` is the target at the end and ``passes_done`` of
+    ``passes_planned`` were driven, all None where there is no plan or it was not written in time.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+
+    started_utc: str
+    written_utc: str | None = None
+    duration_s: float
+    events: int
+    ended: bool
+    source: str
+    filter: str
+    field: str | None = None
+    operation: str | None = None
+    pass_number: int | None = None
+    passes_done: int | None = None
+    passes_planned: int | None = None
+    worked_m2: float | None = None
+    truncated: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingFiles:
+    """The contents of a recording's files, wherever they lie. ``events`` as they lie there, packed or not."""
+
+    name: str
+    session: bytes
+    events: bytes
+
+
+def is_recording(path: Path) -> bool:
+    """Whether this folder or zip is one of a drive's recording (whole or damaged), by its names alone."""
+    try:
+        if path.is_dir():
+            return (path / SESSION).is_file() and any((path / name).is_file() for name in (EVENTS, PACKED))
+        with zipfile.ZipFile(path) as archive:
+            return SESSION in archive.namelist()
+    except (OSError, zipfile.BadZipFile):
+        return False
+
+
+def open_recording(path: Path, progress: Callable[[float], None] | None = None) -> RecordedDrive:
+    """The recorded drive in a folder, or in a zip of one, up to where it breaks off. Raises ``StoreError``.
+
+    ``progress`` hears how much of it has been read, in parts of 1.
+    """
+    return opened(read_recording(path), progress)
+
+
+def read_recording(path: Path) -> RecordingFiles:
+    """The contents of a recording's files, not looked into. Raises ``StoreError``."""
+    try:
+        if path.is_dir():
+            return _from_folder(path)
+        if path.is_file():
+            return _from_zip(path)
+    except (OSError, EOFError, NotImplementedError, RuntimeError, zlib.error, zipfile.BadZipFile) as error:
+        reason = why(error) if isinstance(error, OSError) else str(error) or "it is damaged"
+        msg = f"the recording {path} cannot be read: {reason}"
+        raise StoreError(msg) from error
+    msg = f"there is no recording {path}: check the spelling and the folder"
+    raise StoreError(msg)
+
+
+def opened(files: RecordingFiles, progress: Callable[[float], None] | None = None) -> RecordedDrive:
+    """The recorded drive in these contents. Raises ``StoreError``."""
+    try:
+        meta = _meta_of(files.session)
+        text, damage = _unpacked(files.events)
+        lines = read_lines(text, progress)
+    except (RecordingError, BrokenDocumentError, NewerDocumentError) as error:
+        msg = f"the recording {files.name} cannot be opened: {error}"
+        raise StoreError(msg) from error
+    digest = hashlib.sha256(files.session + b"\0" + lines.text[: lines.size]).hexdigest()
+    return RecordedDrive(files.name, meta, lines, _truncation(lines, damage), digest)
+
+
+def packed(text: bytes) -> bytes:
+    """The events as they lie in a recording that has ended."""
+    return gzip.compress(text, mtime=0)
+
+
+def read_summary(folder: Path) -> RecordingSummary | None:
+    """The summary that lies in a recording's folder; None without one that can be read."""
+    try:
+        return RecordingSummary.model_validate_json(read_bounded(folder / SUMMARY))
+    except (OSError, StoreError, ValidationError):
+        return None  # it is made from the recording then
+
+
+# --- files -----------------------------------------------------------------------------------------------------------
+
+
+def _from_folder(folder: Path) -> RecordingFiles:
+    if not (folder / SESSION).is_file():
+        msg = f"{folder} is no recording: there is no {SESSION} in it"
+        raise StoreError(msg)
+    session = read_bounded(folder / SESSION)
+    for name in (PACKED, EVENTS):
+        if (folder / name).is_file():
+            if (folder / name).stat().st_size > MOST_BYTES:
+                msg = f"the recording {folder} cannot be read: its events are larger than 1 GB"
+                raise StoreError(msg)
+            return RecordingFiles(folder.name, session, (folder / name).read_bytes())
+    return RecordingFiles(folder.name, session, b"")
+
+
+def _from_zip(path: Path) -> RecordingFiles:
+    if not zipfile.is_zipfile(path):
+        msg = f"{path} is no recording: it is neither a recording's folder nor a zip of one"
+        raise StoreError(msg)
+    with zipfile.ZipFile(path) as archive:
+        names = set(archive.namelist())
+        events = next((name for name in (PACKED, EVENTS) if name in names), None)
+        if SESSION not in names or events is None:
+            msg = f"{path} is no recording: there is no {SESSION if SESSION not in names else EVENTS} in it"
+            raise StoreError(msg)
+        if sum(archive.getinfo(name).file_size for name in (SESSION, events)) > MOST_BYTES:
+            msg = f"the recording {path} cannot be read: it unpacks to more than 1 GB"
+            raise StoreError(msg)
+        return RecordingFiles(path.stem, archive.read(SESSION), archive.read(events))
+
+
+def _unpacked(events: bytes) -> tuple[bytes, str | None]:
+    """The text of the events, and what is wrong with its packing. What a damaged archive still gives is taken."""
+    if not events.startswith(b"\x1f\x8b"):
+        return events, None
+    unpacker = zlib.decompressobj(wbits=zlib.MAX_WBITS | 16)
+    parts: list[bytes] = []
+    size = 0
+    with io.BytesIO(events) as packed:
+        while block := packed.read(1 << 16):
+            try:
+                parts.append(unpacker.decompress(block))
+            except zlib.error:
+                return b"".join(parts), "its archive is damaged"
+            size += len(parts[-1])
+            if size > MOST_BYTES:
+                msg = "its events unpack to more than 1 GB"
+                raise RecordingError(msg)
+    return b"".join(parts), None if unpacker.eof else "its archive is cut off"
+
+
+def _truncation(lines: Lines, damage: str | None) -> str | None:
+    if not (lines.left_over or damage):
+        return None
+    where = float(lines.arrivals[-1]) if len(lines) else 0.0
+    clock = f"{int(where // 3600)}:{int(where // 60) % 60:02}:{int(where % 60):02}"
+    rest = f"{lines.left_over} bytes that follow are left out" if lines.left_over else damage
+    return f"the recording breaks off at {clock}, after {len(lines)} events: {rest}"
+
+
+# --- session.json ----------------------------------------------------------------------------------------------------
+
+
+def _meta_of(content: bytes) -> RecordingMeta:
+    members = _members(content)
+    version = members.get("schema_version")
+    if isinstance(version, int) and version > FORMAT:
+        msg = (
+            f"its {SESSION} has schema version {version} and this program knows up to {FORMAT}:"
+            " it was recorded by a newer version of the program; update this one"
+        )
+        raise NewerDocumentError(msg, None)
+    if members.get("kind") != "recording":
+        msg = f"its {SESSION} is not that of a recorded drive (its kind is {members.get('kind')!r})"
+        raise RecordingError(msg)
+    documents = members.pop("job", None)
+    if not isinstance(documents, dict):
+        msg = f"its {SESSION} holds no documents"
+        raise RecordingError(msg)
+    job = _job_of(documents)
+    try:
+        return RecordingMeta.model_validate({**members, "job": job})
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"])
+        msg = f"its {SESSION} is refused: {where}: {first['msg']}"
+        raise RecordingError(msg) from error
+
+
+def _members(content: bytes) -> dict[str, Any]:
+    try:
+        members = json.loads(content)
+    except (ValueError, RecursionError) as error:
+        msg = f"its {SESSION} is not JSON ({error})"
+        raise RecordingError(msg) from error
+    if not isinstance(members, dict):
+        msg = f"its {SESSION} is JSON, but does not describe a recording"
+        raise RecordingError(msg)
+    return members
+
+
+def _job_of(documents: dict[str, Any]) -> Job:
+    """The documents, older ones lifted; every one that another names must be there."""
+    missing = [name for name in _NEEDED if documents.get(name) is None]
+    operation = documents.get("operation")
+    if isinstance(operation, dict) and operation.get("method") != "line" and documents.get("field") is None:
+        missing.append(f"field '{operation.get('field')}', which its operation names,")
+    if missing:
+        msg = f"its {SESSION} lacks a document: the {missing[0]} is not there"
+        raise RecordingError(msg)
+    made: dict[str, Document] = {}
+    for name, kind in _JOB.items():
+        if documents.get(name) is None:
+            continue
+        try:
+            made[name] = decoded(json.dumps(documents[name]).encode(), kind)
+        except BrokenDocumentError as error:
+            msg = f"its {name} is broken: {error}"
+            raise RecordingError(msg) from error
+    return Job.model_validate(made)
