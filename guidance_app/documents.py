@@ -324,6 +324,9 @@ class Units(StrEnum):
     METRIC = "metric"
     IMPERIAL = "imperial"
     JAPANESE = "japanese"
+    """Metric, areas in ares."""
+    TAN = "tan"
+    """Metric, areas in tan and chō."""
 
 
 LightBarSteps = tuple[float, float, float, float, float, float, float, float]

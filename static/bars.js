@@ -4,9 +4,10 @@
 const LEAN_SHOWN = 3; // a lean is a few degrees; it is drawn so much larger
 const LEAN_MOST = 60;
 export const COLOURS = ["ground", "ink", "dim", "hollow", "off", "green", "yellow", "red", "on-green", "track", "mark"];
-const FONT = 'system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", "DejaVu Sans", sans-serif';
+const FONT = 'system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", "Noto Sans CJK JP", "DejaVu Sans", sans-serif';
 
-/** The painter of one canvas, on the page or in a worker. `style` is shared with its owner, who changes it. */
+/** The painter of one canvas, on the page or in a worker. `style` is shared with its owner, who changes it;
+ * its `words` are what is said here, in the driver's language. */
 export function makeBars(canvas, style) {
   const pen = canvas.getContext("2d");
   let size = { width: 0, height: 0, side: 0 };
@@ -32,6 +33,7 @@ export function makeBars(canvas, style) {
     pen.textBaseline = "middle";
     pen.fillText(text, x, y);
   };
+  const capitals = (text) => text.toLocaleUpperCase(style.language);
   const box = (x, y, width, height, radius) => {
     pen.beginPath();
     pen.roundRect(x, y, width, height, radius);
@@ -126,7 +128,7 @@ export function makeBars(canvas, style) {
 
     const caption = place.phone ? 11 : 13;
     font(caption, 700);
-    words(onLine ? "ON THE LINE" : `STEER ${direction < 0 ? "LEFT" : "RIGHT"}`, place.middle, place.rowTop + 12, ink);
+    words(capitals(style.words[onLine ? "onTheLine" : direction < 0 ? "steerLeft" : "steerRight"]), place.middle, place.rowTop + 12, ink);
 
     const arrow = place.large * 0.6;
     const room = place.pill - 2 * (arrow * 0.74 + 16);
@@ -215,8 +217,8 @@ export function makeBars(canvas, style) {
   const labels = (place) => {
     const y = place.trackTop + place.trackHeight / 2 + 1;
     font(place.phone ? 11 : 13, 700);
-    words("HEADING", place.from + 14, y, colours.dim, "left");
-    words(style.ahead && `IN ${style.ahead}`, place.from + place.span - 14, y, colours.dim, "right");
+    words(capitals(style.words.heading), place.from + 14, y, colours.dim, "left");
+    words(style.words.ahead, place.from + place.span - 14, y, colours.dim, "right");
   };
 
   // Nothing to steer by: hollow lamps, and the reason over them in words.
@@ -258,9 +260,9 @@ export function makeBars(canvas, style) {
 
   const noData = (place) => {
     font(place.phone ? 40 : 56);
-    words("NO DATA", place.middle, place.height / 2 - (place.phone ? 14 : 10), "#ffffff");
+    words(style.words.noData, place.middle, place.height / 2 - (place.phone ? 14 : 10), "#ffffff");
     font(place.phone ? 15 : 18, 500);
-    words("The console does not answer", place.middle, place.height / 2 + (place.phone ? 24 : 34), "#ffffff");
+    words(style.words.noAnswer, place.middle, place.height / 2 + (place.phone ? 24 : 34), "#ffffff");
   };
 
   /** Draws one state; gives what a test or a screen reader may want to know of the picture. */

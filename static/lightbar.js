@@ -51,7 +51,7 @@ const workedArea = element("span", "area", lastLine);
 document.body.append(bar);
 
 // --- what is said beside the bars, to eyes, screen readers and tests ---
-const sayAttributes = (known) => {
+const sayAttributes = (known, { words, language }) => {
   bar.dataset.state = shared.state;
   bar.dataset.crossTrack = known.x === undefined ? "" : (known.x / 1000).toFixed(3);
   bar.dataset.lamps = known.k ?? "";
@@ -59,7 +59,9 @@ const sayAttributes = (known) => {
   bar.dataset.sequence = known.q ?? "";
   bar.dataset.fixAge = known.a === undefined ? "" : (known.a / 1000).toFixed(3);
   const { steer, number, reason } = shared.drawn;
-  const spoken = reason ?? (steer === "none" ? "on the line" : `steer ${steer} ${number}`);
+  const steering = { none: words.onTheLine, left: `${words.steerLeft} ${number}`, right: `${words.steerRight} ${number}` };
+  const spoken = reason ?? steering[steer];
+  if (document.documentElement.lang !== language) document.documentElement.lang = language;
   if (canvas.getAttribute("aria-label") !== spoken) canvas.setAttribute("aria-label", spoken);
 };
 
@@ -68,9 +70,11 @@ const sayWords = (known, style) => {
   setText(passName, name);
   setText(passDetail, detail ?? "");
   const [distance, seconds, level, fits] = known.u ?? ["", "", "far", 1];
-  setText(turnLine, distance && `turn ${distance}${seconds && ` · ${seconds}`}${fits ? "" : " · tight"}`);
+  const { words } = style;
+  const turn = [words.turn.replace("{distance}", distance), seconds, fits ? "" : words.tight];
+  setText(turnLine, distance && turn.filter((part) => part).join(" · "));
   turnLine.dataset.level = level;
-  setText(workLine, known.w === undefined ? "" : known.w ? "working" : "implement up");
+  setText(workLine, known.w === undefined ? "" : known.w ? words.working : words.lifted);
   workLine.dataset.down = known.w ?? "";
   setText(speedNumber, known.v ?? "");
   setText(speedUnit, known.v ? style.speed : "");
@@ -99,11 +103,12 @@ const hear = ({ reload, style, timing, ...news }) => {
     return;
   }
   const before = shared.state;
+  if (style) __page.words = style.words;
   Object.assign(shared, news);
   if (timing) shared.timings.push(timing);
   if (shared.timings.length > TIMINGS) shared.timings.splice(0, TIMINGS / 2);
   const known = shared.message ?? {};
-  sayAttributes(known);
+  sayAttributes(known, style);
   sayWords(known, style);
   alarm(before, style.sounds);
 };

@@ -59,5 +59,8 @@
     hear(isNight());
   };
 
-  window.__page = { beep, isNight, onNight };
+  // What the page says, in the driver's language: the light bar hears it from the console.
+  const words = { notSent: "{file} could not be sent" };
+
+  window.__page = { beep, isNight, onNight, words };
 })();

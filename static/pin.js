@@ -29,9 +29,9 @@
   };
 
   for (const digit of "123456789") key(digit, digit, () => type(digit));
-  key("Clear", "Clear", () => (field.value = ""));
+  key(keys.dataset.clear, keys.dataset.clear, () => (field.value = ""));
   key("0", "0", () => type("0"));
-  key("Back", "Delete the last digit", () => (field.value = field.value.slice(0, -1)));
+  key(keys.dataset.back, keys.dataset.delete, () => (field.value = field.value.slice(0, -1)));
   keys.hidden = false;
   form.querySelector(".enter").hidden = true;
   field.inputMode = "none"; // our keys are larger than the tablet's
@@ -46,7 +46,7 @@
   let wait = Number(message.dataset.wait);
   const countDown = () => {
     document.body.classList.toggle("waiting", wait > 0);
-    message.textContent = wait > 0 ? `${words} Wait ${wait} s.` : "";
+    message.textContent = wait > 0 ? `${words} ${message.dataset.waiting.replace("{seconds}", wait)}` : "";
     if (wait > 0) setTimeout(countDown, 1000);
     wait -= 1;
   };

@@ -6,9 +6,26 @@ import { listen } from "./live.js";
 
 const epoch = (moment) => (moment === null ? null : performance.timeOrigin + moment);
 
+// What is said before the console has told its words.
+const UNTOLD = {
+  connecting: "Connecting",
+  noData: "NO DATA",
+  noAnswer: "The console does not answer",
+  onTheLine: "",
+  steerLeft: "",
+  steerRight: "",
+  heading: "",
+  ahead: "",
+  turn: "",
+  tight: "",
+  working: "",
+  lifted: "",
+  notSent: "{file} could not be sent",
+};
+
 /** Draws on `canvas` for good. `tell` gets news for the page: what stands on the canvas, and what it was drawn from. */
 export function runBar(canvas, tell) {
-  const style = { speed: "", zones: "gggyyyrr", guided: "tractor", ahead: "", sounds: false, start: null };
+  const style = { speed: "", zones: "gggyyyrr", guided: "", sounds: false, start: null, language: "en", words: UNTOLD };
   const bars = makeBars(canvas, style);
   let state = "opening";
   let message = null;
@@ -16,8 +33,8 @@ export function runBar(canvas, tell) {
 
   const reason = () => {
     if (state === "guide") return null;
-    if (state === "silent") return "NO DATA";
-    const words = message?.r ?? "connecting";
+    if (state === "silent") return style.words.noData;
+    const words = message?.r ?? style.words.connecting;
     return words.charAt(0).toUpperCase() + words.slice(1);
   };
 

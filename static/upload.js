@@ -26,7 +26,7 @@
       });
       say(label, await answer.text());
     } catch {
-      say(label, `${file.name} could not be sent: too large, or the connection broke.`);
+      say(label, __page.words.notSent.replace("{file}", () => file.name));
     }
     input.value = "";
   });

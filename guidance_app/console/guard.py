@@ -1,7 +1,7 @@
 """What stands around the whole front: nothing of it is reached without passing here. The rules are in ``access.py``."""
 
 import html
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from urllib.parse import parse_qs
 
 from starlette.datastructures import MutableHeaders
@@ -11,6 +11,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from guidance_app.console.access import Admitted, Door, Names, Refused, Wait, foreign
 from guidance_app.console.front import ICON, Asset
+from guidance_app.language import Words
 
 __all__ = ["Guard"]
 
@@ -41,8 +42,18 @@ ON_EVERY_RESPONSE = {
 class Guard:
     """Lets through to ``app`` what comes from our own page and, on a network, from a browser that has shown the PIN."""
 
-    def __init__(self, app: ASGIApp, door: Door, files: Mapping[str, Asset], names: Names, cookie: str) -> None:
+    def __init__(
+        self,
+        app: ASGIApp,
+        door: Door,
+        files: Mapping[str, Asset],
+        names: Names,
+        *,
+        cookie: str,
+        words: Callable[[], Words],
+    ) -> None:
         self._app = app
+        self._words = words
         self._door = door
         self._files = files
         self._names = names
@@ -89,6 +100,7 @@ class Guard:
         return self._pin_page("", 0.0, 401)
 
     def _knock(self, request: Request, pin: str) -> Response:
+        words = self._words()
         match self._door.knock("" if request.client is None else request.client.host, pin.strip()):
             case Admitted(token):
                 entered = HTMLResponse(ENTER, headers={"Cache-Control": "no-store", "Referrer-Policy": "no-referrer"})
@@ -97,19 +109,36 @@ class Guard:
                 )
                 return entered
             case Refused(0, seconds):
-                return self._pin_page("Wrong PIN.", seconds, 401)
-            case Refused(1, _):
-                return self._pin_page("Wrong PIN. 1 try left.", 0.0, 401)
+                return self._pin_page(words("Wrong PIN."), seconds, 401)
             case Refused(tries, _):
-                return self._pin_page(f"Wrong PIN. {tries} tries left.", 0.0, 401)
+                left = words.plural("Wrong PIN. {n} try left.", "Wrong PIN. {n} tries left.", tries)
+                return self._pin_page(left, 0.0, 401)
             case Wait(seconds):
-                return self._pin_page("Too many wrong PINs.", seconds, 429)
+                return self._pin_page(words("Too many wrong PINs."), seconds, 429)
 
     def _pin_page(self, message: str, wait: float, status: int) -> Response:
         page = self._files[PIN_PAGE].body.decode()
-        page = page.replace("{message}", html.escape(message)).replace("{wait}", f"{max(0.0, wait):.0f}")
+        said = _said(self._words()) | {"message": message, "wait": f"{max(0.0, wait):.0f}"}
+        for name, text in said.items():
+            page = page.replace(f"{{{name}}}", html.escape(text))
         headers = {"Cache-Control": "no-store"} | ({"Retry-After": f"{wait + 1:.0f}"} if wait else {})
         return HTMLResponse(page, status, headers)
+
+
+def _said(words: Words) -> dict[str, str]:
+    """What the PIN page says, by the names in its braces."""
+    return {
+        "language": words.language,
+        "title": words("Guidance: PIN"),
+        "heading": words("Guidance console"),
+        "hint": words("Type the PIN that stands in the console's terminal."),
+        "digits": words("PIN, six digits"),
+        "open": words("Open"),
+        "clear": words.within("keypad", "Clear"),
+        "back": words.within("keypad", "Back"),
+        "delete": words("Delete the last digit"),
+        "waiting": words("Wait {seconds} s."),
+    }
 
 
 async def _posted_pin(request: Request) -> str:

@@ -13,6 +13,7 @@ from guidance_app.console.files import Files
 from guidance_app.documents import FieldDocument, Job, Method, Operation, Settings
 from guidance_app.exchange import ExchangeError
 from guidance_app.guidance.planning import PlanError
+from guidance_app.language import sentence
 from guidance_app.runtime import LiveSession, Session, SessionManager
 from guidance_app.sources import SourceError, open_source
 from guidance_app.store import Store, StoreError
@@ -83,7 +84,13 @@ class House:
                 failed(str(error))
             except Exception as error:
                 log.exception("work asked for at the screen failed")
-                failed(f"This failed inside the program ({type(error).__name__}: {error}). Nothing was changed.")
+                failed(
+                    sentence(
+                        "This failed inside the program ({kind}: {error}). Nothing was changed.",
+                        kind=type(error).__name__,
+                        error=str(error),
+                    )
+                )
 
         self._workers.submit(run)
 

@@ -19,7 +19,7 @@ from guidance_app.console.house import House
 from guidance_app.console.moving import ClientScene, Models
 from guidance_app.console.panels import HEAD, PANELS, SETUP_PANELS
 from guidance_app.console.sketch import Sketch
-from guidance_app.language import words_for
+from guidance_app.language import Words, words_for
 from guidance_app.model import Snapshot
 from guidance_app.view.camera import ViewMode
 from guidance_app.view.colours import palette_of
@@ -257,6 +257,7 @@ class Screen:
             seconds = None if bad else TOLD_S
             client.handle.add_notification(title, body, auto_close_seconds=seconds, color="red" if bad else "green")
 
+        words = words_for(self._house.settings().language)
         return Hands(
             post=self._session.post,
             look=look,
@@ -264,10 +265,10 @@ class Screen:
             set_night=self._wish_night,
             desk=desk,
             replay=self._session.replay,
-            words=words_for(self._house.settings().language),
+            words=words,
             house=self._house,
             sketch=client.sketch,
-            later=lambda work: self._house.later(work, lambda sentence: tell("Not done", sentence, bad=True)),
+            later=lambda work: self._house.later(work, lambda why: tell(words("Not done"), words.say(why), bad=True)),
             tell=tell,
             go=go,
             renew=self._renew,
@@ -288,7 +289,7 @@ class Screen:
         client.sketch.clear()
         gui, hands = client.handle.gui, self._hands(client)
         gui.reset()
-        gui.set_panel_label(self._title() if place is Place.DRIVE else "Setup")
+        gui.set_panel_label(self._title(hands.words) if place is Place.DRIVE else hands.words("Setup"))
         main = gui.main_panel
         main.dock_right()
         main.set_width(PANEL_WIDTH)
@@ -296,12 +297,12 @@ class Screen:
         tabs = gui.add_panel() if place is Place.DRIVE else gui.add_tab_group()
         for name, panel in (PANELS if place is Place.DRIVE else SETUP_PANELS).items():
             if name != "replay" or hands.replay is not None:
-                with tabs.add_tab(panel.title):
+                with tabs.add_tab(hands.words(panel.title)):
                     client.panels.append(panel(gui, hands))
         if isinstance(tabs, viser.PanelHandle):
             tabs.dock_below(main)
 
-    def _title(self) -> str:
-        field = self._job.field.name if self._job.field is not None else "No field"
+    def _title(self, words: Words) -> str:
+        field = self._job.field.name if self._job.field is not None else words("No field")
         operation = self._job.operation.name if self._job.operation is not None else self._job.implement.name
         return f"{field} · {operation}"

@@ -26,6 +26,7 @@ from guidance_app.console.live import LiveHub
 from guidance_app.console.qr import terminal_qr
 from guidance_app.console.screen import Screen
 from guidance_app.console.web_server import WebServer
+from guidance_app.language import Words, words_for
 from guidance_app.runtime import Session, SessionManager
 from guidance_app.store import Store
 
@@ -119,7 +120,10 @@ class Console:
         files = own_files(static_folder())
         app = front_app(files, self.hub, inner.uri, inner.headers, self.house.files)
         names = Names(own_names() | {self._host, LOOPBACK, "::1"}, any_number=self._lan)
-        return Guard(app, Door(self.pin), files, names, cookie=f"guidance_{port}")
+        return Guard(app, Door(self.pin), files, names, cookie=f"guidance_{port}", words=self._words)
+
+    def _words(self) -> Words:
+        return words_for(self.house.settings().language)
 
     def _reachable(self) -> tuple[str, ...]:
         if self._host != ALL_INTERFACES:

@@ -15,6 +15,7 @@ from typing import Any
 
 import viser
 
+from guidance_app.language import Words
 from guidance_app.view.status import Figure, Level
 
 __all__ = [
@@ -84,12 +85,14 @@ def notice_html(notices: Iterable[str]) -> str:
     return "".join(f'<div class="g-notice">{html.escape(one)}</div>' for one in notices)
 
 
-def notice_line_html(notices: Sequence[str]) -> str:
+def notice_line_html(notices: Sequence[str], words: Words) -> str:
     """The first thing to know on one line, and how many there are; all of them are in the info panel."""
     if not notices:
         return ""
-    which = f"(1 of {len(notices)}) " if len(notices) > 1 else ""
-    return f'<div class="g-line">{notice_html([which + notices[0]])}</div>'
+    first = notices[0]
+    if len(notices) > 1:
+        first = words("(1 of {count}) {notice}", count=len(notices), notice=first)
+    return f'<div class="g-line">{notice_html([first])}</div>'
 
 
 def rows_html(rows: Iterable[tuple[str, str]]) -> str:

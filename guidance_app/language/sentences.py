@@ -25,6 +25,10 @@ class Sentence(str):
         made.values = MappingProxyType(dict(values))
         return made
 
+    def __str__(self) -> str:
+        """Itself, so that ``str(error)`` still knows the pattern of the sentence that the error was raised with."""
+        return self
+
     def __reduce__(self) -> tuple[type["Sentence"], tuple[str, dict[str, object]]]:
         """Survives a copy, and the way to another process and back."""
         return Sentence, (self.pattern, dict(self.values))

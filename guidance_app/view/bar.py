@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from guidance_app.documents import Settings, Units
+from guidance_app.language import Words, message, words_for
 from guidance_app.model import FixQuality, Guidance, LinkState, LinkStatus, Pose, Snapshot
 from guidance_app.view.instant import moved_right
 from guidance_app.view.units import area_text, distance_text, offset_text, speed_text, speed_unit
@@ -46,15 +47,15 @@ class BarState(StrEnum):
 
 
 REASONS = {
-    BarState.CONNECTING: "waiting for the receiver",
-    BarState.NO_DATA: "the receiver sends nothing",
-    BarState.NO_SENTENCE: "data, but no valid sentence",
-    BarState.NO_FIX: "no fix",
-    BarState.DOWN: "receiver lost",
-    BarState.ENDED: "end of the recording",
-    BarState.NOT_READY: "finding the position",
-    BarState.NO_DIRECTION: "direction unknown: drive 2 m",
-    BarState.NO_LINE: "no line",
+    BarState.CONNECTING: message("waiting for the receiver"),
+    BarState.NO_DATA: message("the receiver sends nothing"),
+    BarState.NO_SENTENCE: message("data, but no valid sentence"),
+    BarState.NO_FIX: message("no fix"),
+    BarState.DOWN: message("receiver lost"),
+    BarState.ENDED: message("end of the recording"),
+    BarState.NOT_READY: message("finding the position"),
+    BarState.NO_DIRECTION: message("direction unknown: drive 2 m"),
+    BarState.NO_LINE: message("no line"),
 }
 
 TROUBLES: Mapping[LinkStatus, BarState | None] = {
@@ -72,15 +73,15 @@ MOVING = frozenset({BarState.GUIDE, BarState.NO_LINE, BarState.NO_DIRECTION})
 """States in which the pose is of now, so that the speed may be shown."""
 
 QUALITIES = {
-    FixQuality.NONE: "no fix",
-    FixQuality.AUTONOMOUS: "GPS",
-    FixQuality.DGPS: "DGPS",
-    FixQuality.PPS: "PPS",
-    FixQuality.RTK_FIXED: "RTK fixed",
-    FixQuality.RTK_FLOAT: "RTK float",
-    FixQuality.DEAD_RECKONING: "dead reckoning",
-    FixQuality.MANUAL: "manual",
-    FixQuality.SIMULATED: "simulated",
+    FixQuality.NONE: message("no fix"),
+    FixQuality.AUTONOMOUS: message("GPS"),
+    FixQuality.DGPS: message("DGPS"),
+    FixQuality.PPS: message("PPS"),
+    FixQuality.RTK_FIXED: message("RTK fixed"),
+    FixQuality.RTK_FLOAT: message("RTK float"),
+    FixQuality.DEAD_RECKONING: message("dead reckoning"),
+    FixQuality.MANUAL: message("manual"),
+    FixQuality.SIMULATED: message("simulated"),
 }
 
 
@@ -139,6 +140,7 @@ class BarView:
 
 def bar_of(snapshot: Snapshot, now: float, settings: Settings) -> BarView:
     """The bars at the instant ``now`` of the session clock: the newest pose is carried forward to it."""
+    words = words_for(settings.language)
     fix_age = None if snapshot.fix is None else max(0.0, now - snapshot.fix.arrival)
     state = _state(snapshot, fix_age)
     pose = snapshot.pose if state in MOVING else None
@@ -148,12 +150,12 @@ def bar_of(snapshot: Snapshot, now: float, settings: Settings) -> BarView:
     return BarView(
         sequence=snapshot.sequence,
         state=state,
-        reason=_reason(state, snapshot.link, fix_age),
+        reason=_reason(state, snapshot.link, fix_age, words),
         steering=steering,
         fix_age=fix_age,
-        fix=_fix_text(snapshot, fix_age, state),
-        speed="" if pose is None else speed_text(pose.speed, settings.units),
-        area=area_text(snapshot.totals.worked, settings.units),
+        fix=_fix_text(snapshot, fix_age, state, words),
+        speed="" if pose is None else speed_text(pose.speed, settings.units, words),
+        area=area_text(snapshot.totals.worked, settings.units, words),
         working=None if pose is None else snapshot.working,
     )
 
@@ -173,43 +175,43 @@ def _state(snapshot: Snapshot, fix_age: float | None) -> BarState:
     return BarState.NO_LINE if snapshot.guidance is None else BarState.GUIDE
 
 
-def _reason(state: BarState, link: LinkState, fix_age: float | None) -> str:
+def _reason(state: BarState, link: LinkState, fix_age: float | None, words: Words) -> str:
     """Why there is nothing to steer by. The link's own words belong to it where it broke, and are kept short."""
     if state is BarState.GUIDE:
         return ""
     if state is BarState.STALE and fix_age is not None:
-        return f"no position for {fix_age:.0f} s"
+        return words("no position for {age}", age=words("{n} s", n=round(fix_age)))
     if state is BarState.DOWN and link.reason:
-        return f"{REASONS[state]}: {link.reason}"[:60]
-    return REASONS[state]
+        return f"{words(REASONS[state])}: {words.say(link.reason)}"[:60]
+    return words(REASONS[state])
 
 
-def _fix_text(snapshot: Snapshot, fix_age: float | None, state: BarState) -> str:
+def _fix_text(snapshot: Snapshot, fix_age: float | None, state: BarState, words: Words) -> str:
     """Fix quality with its age; whole seconds, because a changing tenth draws the eye and says nothing."""
     if snapshot.fix is None or fix_age is None:
-        return REASONS[BarState.NO_FIX]
+        return words(REASONS[BarState.NO_FIX])
     if state in (BarState.NO_FIX, BarState.STALE, BarState.DOWN, BarState.NO_DATA, BarState.NO_SENTENCE):
-        return f"last fix {_age_text(fix_age)} ago"
-    return f"{QUALITIES[snapshot.fix.quality]}, {_age_text(fix_age)}"
+        return words("last fix {age} ago", age=_age_text(fix_age, words))
+    return f"{words(QUALITIES[snapshot.fix.quality])}, {_age_text(fix_age, words)}"
 
 
-def _age_text(age: float) -> str:
+def _age_text(age: float, words: Words) -> str:
     if age < 1.0:
-        return "<1 s"
-    return f"{int(age)} s" if age < 100 else f"{int(age / 60)} min"
+        return words("<1 s")
+    return words("{n} s", n=int(age)) if age < 100 else words("{n} min", n=int(age / 60))
 
 
 def _steering(snapshot: Snapshot, pose: Pose, guidance: Guidance, now: float, settings: Settings) -> Steering:
     seconds = now - pose.arrival
     point = snapshot.implement[:2] if settings.guide_implement and snapshot.implement else (pose.east, pose.north)
     off = guidance.cross_track + moved_right(guidance, pose, point, seconds)
-    steps, units = settings.light_bar_steps, settings.units
+    steps, units, words = settings.light_bar_steps, settings.units, words_for(settings.language)
     steering = Steering(
         cross_track=off,
         lamps=_lit(off, steps),
-        number=offset_text(off, units),
-        pass_text=_pass_text(guidance),
-        turn=_turn(guidance, pose, units),
+        number=offset_text(off, units, words),
+        pass_text=_pass_text(guidance, words),
+        turn=_turn(guidance, pose, units, words),
     )
     ahead = snapshot.prediction
     if ahead is None or ahead.cross_track is None:
@@ -218,7 +220,7 @@ def _steering(snapshot: Snapshot, pose: Pose, guidance: Guidance, now: float, se
     return replace(
         steering,
         predicted=_place(predicted, steps),
-        predicted_number=offset_text(predicted, units),
+        predicted_number=offset_text(predicted, units, words),
         lean=ahead.heading_error,
     )
 
@@ -246,17 +248,20 @@ def lamp_zones(steps: tuple[float, ...]) -> str:
     return "".join("g" if lamp < green else "y" if lamp < yellow else "r" for lamp in range(len(steps)))
 
 
-def _pass_text(guidance: Guidance) -> str:
+def _pass_text(guidance: Guidance, words: Words) -> str:
     """``pass 3 of 24 (line +2)``: its place in the driving order, and its number counted from the guidance line."""
     target = guidance.target
-    name = f"lap {target.number}" if target.lap else f"line {target.number:+d}" if target.number else "line 0"
+    number = f"{target.number:+d}" if target.number and not target.lap else f"{target.number}"
+    name = words("lap {number}", number=number) if target.lap else words("line {number}", number=number)
     if target.order is None:
         return name
-    of_all = "" if guidance.count is None else f" of {guidance.count}"
-    return f"pass {target.order + 1}{of_all} ({name})"
+    place = target.order + 1
+    if guidance.count is None:
+        return f"{words('pass {number}', number=place)} ({name})"
+    return f"{words('pass {number} of {count}', number=place, count=guidance.count)} ({name})"
 
 
-def _turn(guidance: Guidance, pose: Pose, units: Units) -> TurnView | None:
+def _turn(guidance: Guidance, pose: Pose, units: Units, words: Words) -> TurnView | None:
     if guidance.turn is not None:
         distance, seconds, fits = guidance.turn.distance, guidance.turn.seconds, guidance.turn.fits
     elif guidance.remaining is not None:
@@ -264,12 +269,12 @@ def _turn(guidance: Guidance, pose: Pose, units: Units) -> TurnView | None:
         seconds = distance / abs(pose.speed) if not pose.standing and abs(pose.speed) > 0.1 else None
     else:
         return None
-    return TurnView(distance_text(distance, units), _seconds_text(seconds), _turn_level(seconds), fits)
+    return TurnView(distance_text(distance, units, words), _seconds_text(seconds, words), _turn_level(seconds), fits)
 
 
-def _seconds_text(seconds: float | None) -> str:
+def _seconds_text(seconds: float | None, words: Words) -> str:
     """Empty when it is not known, and when it is so long that only the distance means something."""
-    return "" if seconds is None or seconds >= 99.5 else f"{seconds:.0f} s"
+    return "" if seconds is None or seconds >= 99.5 else words("{n} s", n=round(seconds))
 
 
 def _turn_level(seconds: float | None) -> TurnLevel:
@@ -319,13 +324,34 @@ def _steering_members(steering: Steering) -> dict[str, object]:
     }
 
 
+def page_words(words: Words, look_ahead_s: float) -> dict[str, str]:
+    """What the page itself says on and beside the bars, by the names that its script uses."""
+    return {
+        "connecting": words("Connecting"),
+        "noData": words("NO DATA"),
+        "noAnswer": words("The console does not answer"),
+        "onTheLine": words("on the line"),
+        "steerLeft": words("steer left"),
+        "steerRight": words("steer right"),
+        "heading": words("heading"),
+        "ahead": words("IN {seconds:g} s", seconds=look_ahead_s),
+        "turn": words("turn {distance}"),
+        "tight": words("tight"),
+        "working": words("working"),
+        "lifted": words("implement up"),
+        "notSent": words("{file} could not be sent: too large, or the connection broke."),
+    }
+
+
 def style_json(settings: Settings, look_ahead_s: float) -> str:
     """What changes only when the driver changes it: sent when a page joins and after a change."""
+    words = words_for(settings.language)
     style = {
         "speed": speed_unit(settings.units),
         "zones": lamp_zones(settings.light_bar_steps),
-        "guided": "implement" if settings.guide_implement else "tractor",
-        "ahead": f"{look_ahead_s:g} s",
+        "guided": words("implement") if settings.guide_implement else words("tractor"),
         "sounds": settings.sounds,
+        "language": settings.language,
+        "words": page_words(words, look_ahead_s),
     }
     return json.dumps({"style": style}, separators=(",", ":"), ensure_ascii=False)

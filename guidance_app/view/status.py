@@ -4,12 +4,14 @@ Absent is a dash. What ages shows its age. Nothing here decides what to do; it o
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from guidance_app.documents import Units
+from guidance_app.language import Words, message
 from guidance_app.model import (
     POSITION_OFFSETS,
+    FixQuality,
     Guidance,
     LinkState,
     LinkStatus,
@@ -94,19 +96,20 @@ def clock(seconds: float | None) -> str:
     return f"{hours}:{minutes:02d}:{left:02d}" if hours else f"{minutes:02d}:{left:02d}"
 
 
-def age_words(seconds: float) -> str:
+def age_words(seconds: float, words: Words) -> str:
     """An age in whole seconds, minutes from two on; a changing tenth draws the eye and says nothing."""
     if seconds < 1.0:
-        return "<1 s"
-    return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"
+        return words("<1 s")
+    whole = round(seconds)
+    return words("{n} s", n=whole) if seconds < 120 else words("{n} min", n=round(seconds / 60))
 
 
-def _signed(metres: float, units: Units) -> str:
+def _signed(metres: float, units: Units, words: Words) -> str:
     """A sideways distance with its side in words: "4 cm right"."""
-    text = offset_text(metres, units)
-    if text.startswith("0 "):
-        return text
-    return f"{text} {'right' if metres > 0 else 'left'}"
+    distance = offset_text(metres, units, words)
+    if distance.startswith("0 "):
+        return distance
+    return words("{distance} right", distance=distance) if metres > 0 else words("{distance} left", distance=distance)
 
 
 def nudge_steps(units: Units) -> tuple[tuple[str, float], ...]:
@@ -123,66 +126,70 @@ def nudge_steps(units: Units) -> tuple[tuple[str, float], ...]:
 # --- work ----------------------------------------------------------------------------------------------------------
 
 
-def work_view(snapshot: Snapshot, now: float, units: Units) -> WorkView:
+def work_view(snapshot: Snapshot, now: float, units: Units, words: Words) -> WorkView:
     """Everything the head and the work panel say."""
-    words, level = fix_words(snapshot, now)
+    fix, level = fix_words(snapshot, now, words)
     return WorkView(
-        figures=figures(snapshot, units),
-        fix=words,
+        figures=figures(snapshot, units, words),
+        fix=fix,
         fix_level=level,
         working=snapshot.working,
-        work_words="Working · press to lift" if snapshot.working else "Lifted · press to work",
-        pass_words=pass_words(snapshot.guidance),
-        line_words=f"Moved {_signed(line_offset(snapshot.offsets), units)}",
-        notices=snapshot.notices,
+        work_words=words("Working · press to lift" if snapshot.working else "Lifted · press to work"),
+        pass_words=pass_words(snapshot.guidance, words),
+        line_words=words("Moved {distance}", distance=_signed(line_offset(snapshot.offsets), units, words)),
+        notices=tuple(words.say(notice) for notice in snapshot.notices),
     )
 
 
-def figures(snapshot: Snapshot, units: Units) -> tuple[Figure, ...]:
+def figures(snapshot: Snapshot, units: Units, words: Words) -> tuple[Figure, ...]:
     """The numbers always in sight: the drive above, the work below."""
     totals = snapshot.totals
     rate = totals.worked / totals.working_s if totals.working_s >= SHORTEST_WORK else None
     remaining = totals.left / rate if rate and totals.left is not None else None
-    speed = ABSENT if snapshot.pose is None else speed_text(snapshot.pose.speed, units)
+    speed = ABSENT if snapshot.pose is None else speed_text(snapshot.pose.speed, units, words)
     return (
-        _place_in_order(snapshot.guidance),
-        Figure("speed", speed, speed_unit(units)),
-        _area("overlap", totals.overlap, units),
-        _area("headland", totals.headland, units),
-        _area("done", totals.worked, units),
-        _area("left", totals.left, units),
-        Figure("time left", *_hours(remaining)),
-        _area("per hour", None if rate is None else rate * 3600, units),
+        _place_in_order(snapshot.guidance, words),
+        Figure(words("speed"), speed, speed_unit(units)),
+        _area(words("overlap"), totals.overlap, units, words),
+        _area(words("headland"), totals.headland, units, words),
+        _area(words("done"), totals.worked, units, words),
+        _area(words.within("still to do", "left"), totals.left, units, words),
+        Figure(words("time left"), *_hours(remaining, words)),
+        _area(words("per hour"), None if rate is None else rate * 3600, units, words),
     )
 
 
-def _area(name: str, square_metres: float | None, units: Units) -> Figure:
-    number, unit = area_text(square_metres or 0.0, units).split(" ")
+def _area(name: str, square_metres: float | None, units: Units, words: Words) -> Figure:
+    number, unit = area_text(square_metres or 0.0, units, words).split(" ")
     return Figure(name, ABSENT if square_metres is None else number, unit)
 
 
-def _hours(seconds: float | None) -> tuple[str, str]:
+def _hours(seconds: float | None, words: Words) -> tuple[str, str]:
     """(number, unit): minutes below 100 of them, hours and minutes from there on."""
     if seconds is None or not math.isfinite(seconds):
-        return ABSENT, "min"
+        return ABSENT, words("min")
     minutes = round(seconds / 60)
-    return (f"{minutes}", "min") if minutes < 100 else (f"{minutes // 60}:{minutes % 60:02d}", "h")
+    if minutes < 100:
+        return f"{minutes}", words("min")
+    return f"{minutes // 60}:{minutes % 60:02d}", words("h")
 
 
-def _place_in_order(guidance: Guidance | None) -> Figure:
+def _place_in_order(guidance: Guidance | None, words: Words) -> Figure:
     if guidance is None:
-        return Figure("pass", ABSENT)
+        return Figure(words("pass"), ABSENT)
     order = guidance.target.order
     if order is None:
-        return Figure("line", f"{guidance.target.number}")
-    return Figure("pass", f"{order + 1}", "" if guidance.count is None else f"of {guidance.count}")
+        return Figure(words("line"), f"{guidance.target.number}")
+    of_all = "" if guidance.count is None else words("of {count}", count=guidance.count)
+    return Figure(words("pass"), f"{order + 1}", of_all)
 
 
-def pass_words(guidance: Guidance | None) -> str:
+def pass_words(guidance: Guidance | None, words: Words) -> str:
     """Which line is guided, by the number painted beside it."""
     if guidance is None:
-        return "No line"
-    return f"{'Lap' if guidance.target.lap else 'Line'} {guidance.target.number}"
+        return words("No line")
+    number = guidance.target.number
+    return words("Lap {number}", number=number) if guidance.target.lap else words("Line {number}", number=number)
 
 
 def neighbour(snapshot: Snapshot, step: int) -> int | None:
@@ -201,107 +208,126 @@ def line_offset(offsets: Iterable[OffsetRecord]) -> float:
 
 # --- fix and link --------------------------------------------------------------------------------------------------
 
-_GOODNESS = {"RTK fixed": GOOD, "no fix": BAD, "dead reckoning": BAD}
+_GOODNESS = {FixQuality.RTK_FIXED: GOOD, FixQuality.NONE: BAD, FixQuality.DEAD_RECKONING: BAD}
 
 
-def fix_words(snapshot: Snapshot, now: float) -> tuple[str, Level]:
+def fix_words(snapshot: Snapshot, now: float, words: Words) -> tuple[str, Level]:
     """The fix's quality with its age, satellites and HDOP, and how good it is; the link's state without a fix."""
     fix = snapshot.fix
     if fix is None or snapshot.link.status not in {LinkStatus.FIX, LinkStatus.ENDED}:
-        return link_words(snapshot.link, now)
-    quality = QUALITIES[fix.quality]
+        return link_words(snapshot.link, now, words)
     age = max(now - fix.arrival, 0.0)
-    parts = [quality, age_words(age)]
+    parts = [words(QUALITIES[fix.quality]), age_words(age, words)]
     if fix.satellites is not None:
-        parts.append(f"{fix.satellites} satellites")
+        parts.append(words.plural("{n} satellite", "{n} satellites", fix.satellites))
     if fix.hdop is not None:
-        parts.append(f"HDOP {fix.hdop:.1f}")
+        parts.append(f"HDOP {words.number(fix.hdop, 1)}")
     late = age > max(STALE_AFTER_S, 2 * (snapshot.fix_interval or 0.0))
-    return " · ".join(parts), BAD if late else _GOODNESS.get(quality, FAIR)
+    return " · ".join(parts), BAD if late else _GOODNESS.get(fix.quality, FAIR)
 
 
 _LINK_WORDS = {
-    LinkStatus.CONNECTING: ("Connecting to the receiver", FAIR),
-    LinkStatus.NO_DATA: ("The receiver sends nothing", BAD),
-    LinkStatus.NO_SENTENCE: ("Data, but no valid sentence", BAD),
-    LinkStatus.NO_FIX: ("The receiver has no position", BAD),
-    LinkStatus.FIX: ("The receiver gives positions", GOOD),
-    LinkStatus.ATTITUDE: ("The sensor gives its attitude", GOOD),
-    LinkStatus.CORRECTED: ("Corrections arrive", GOOD),
-    LinkStatus.DOWN: ("The receiver is gone", BAD),
-    LinkStatus.ENDED: ("The recording has ended", OFF),
+    LinkStatus.CONNECTING: (message("Connecting to the receiver"), FAIR),
+    LinkStatus.NO_DATA: (message("The receiver sends nothing"), BAD),
+    LinkStatus.NO_SENTENCE: (message("Data, but no valid sentence"), BAD),
+    LinkStatus.NO_FIX: (message("The receiver has no position"), BAD),
+    LinkStatus.FIX: (message("The receiver gives positions"), GOOD),
+    LinkStatus.ATTITUDE: (message("The sensor gives its attitude"), GOOD),
+    LinkStatus.CORRECTED: (message("Corrections arrive"), GOOD),
+    LinkStatus.DOWN: (message("The receiver is gone"), BAD),
+    LinkStatus.ENDED: (message("The recording has ended"), OFF),
 }
 
 
-def link_words(link: LinkState, now: float) -> tuple[str, Level]:
+def link_words(link: LinkState, now: float, words: Words) -> tuple[str, Level]:
     """The state of the link in words, for how long, and the reason where there is one."""
-    words, level = _LINK_WORDS[link.status]
-    reason = f": {link.reason}" if link.reason and link.status is not LinkStatus.ENDED else ""
-    return f"{words}, for {age_words(max(now - link.since, 0.0))}{reason}", level
+    state, level = _LINK_WORDS[link.status]
+    reason = f": {words.say(link.reason)}" if link.reason and link.status is not LinkStatus.ENDED else ""
+    since = age_words(max(now - link.since, 0.0), words)
+    return words("{state}, for {since}", state=words(state), since=since) + reason, level
 
 
-def info_view(snapshot: Snapshot, now: float, units: Units) -> InfoView:
+def info_view(snapshot: Snapshot, now: float, units: Units, words: Words) -> InfoView:
     """Everything the info panel says."""
-    words, level = link_words(snapshot.link, now)
+    state, level = link_words(snapshot.link, now, words)
     fix, link = snapshot.fix, snapshot.link
     correction = fix.correction_age if fix is not None else None
-    interval = snapshot.fix_interval
     rows = (
-        ("Last data", ABSENT if link.last_data is None else f"{age_words(max(now - link.last_data, 0.0))} ago"),
-        ("Sentences", f"{link.sentences}, {link.rejected} rejected"),
-        ("Fixes", f"{link.fixes}" if interval is None else f"{link.fixes}, every {interval:.2g} s"),
-        ("Receiver grid", _grid(snapshot)),
-        ("Corrections", ABSENT if correction is None else f"{age_words(correction)} old"),
-        ("Filter", snapshot.filter_name or ABSENT),
-        ("Uncertainty", _uncertainty(snapshot, units)),
-        ("Offsets", _offsets(snapshot.offsets, units)),
+        (words("Last data"), ABSENT if link.last_data is None else _ago(now - link.last_data, words)),
+        (words("Sentences"), words("{count}, {rejected} rejected", count=link.sentences, rejected=link.rejected)),
+        (words("Fixes"), _fixes(link.fixes, snapshot.fix_interval, words)),
+        (words("Receiver grid"), _grid(snapshot, words)),
+        (words("Corrections"), ABSENT if correction is None else words("{age} old", age=age_words(correction, words))),
+        (words("Filter"), snapshot.filter_name or ABSENT),
+        (words("Uncertainty"), _uncertainty(snapshot, units, words)),
+        (words("Offsets"), _offsets(snapshot.offsets, units, words)),
     )
-    return InfoView(words, level, rows)
+    return InfoView(state, level, rows)
 
 
-def _grid(snapshot: Snapshot) -> str:
+def _ago(seconds: float, words: Words) -> str:
+    return words("{age} ago", age=age_words(max(seconds, 0.0), words))
+
+
+def _fixes(count: int, interval: float | None, words: Words) -> str:
+    if interval is None:
+        return f"{count}"
+    return words("{count}, every {interval} s", count=count, interval=words.digits(f"{interval:.2g}"))
+
+
+def _grid(snapshot: Snapshot, words: Words) -> str:
     """The receiver's rounding; metric always, because it is a matter of decimals."""
     cell = snapshot.fix.cell if snapshot.fix is not None else None
     if cell is None:
         return ABSENT
-    north, east = (_fine(side) for side in cell)
-    return f"{north} north, {east} east"
+    north, east = (_fine(side, words) for side in cell)
+    return words("{north} north, {east} east", north=north, east=east)
 
 
-def _fine(metres: float) -> str:
+def _fine(metres: float, words: Words) -> str:
     """A length from tenths of a millimetre up, two digits."""
     for unit, size in (("m", 1.0), ("cm", 0.01), ("mm", 0.001)):
         if metres >= 0.995 * size:
-            return f"{metres / size:.2g} {unit}"
-    return f"{metres / 0.001:.2g} mm"
+            return f"{words.digits(f'{metres / size:.2g}')} {unit}"
+    return f"{words.digits(f'{metres / 0.001:.2g}')} mm"
 
 
-def _uncertainty(snapshot: Snapshot, units: Units) -> str:
+def _uncertainty(snapshot: Snapshot, units: Units, words: Words) -> str:
     covariance = snapshot.pose.covariance if snapshot.pose is not None else None
     if covariance is None:
         return ABSENT
-    return f"± {offset_text(math.sqrt(max(covariance[0], covariance[2], 0.0)), units)}"
+    return f"± {offset_text(math.sqrt(max(covariance[0], covariance[2], 0.0)), units, words)}"
 
 
-def _offsets(offsets: Iterable[OffsetRecord], units: Units) -> str:
-    words = [
-        f"{offset.kind.value} {offset_text(math.hypot(offset.east, offset.north), units)}"
+OFFSETS: Mapping[OffsetKind, str] = {
+    OffsetKind.NUDGE: message("nudge"),
+    OffsetKind.SHIFT: message("shift"),
+    OffsetKind.LINE_HERE: message("line here"),
+    OffsetKind.MARK: message("mark"),
+    OffsetKind.INITIALISATION: message("initialisation"),
+}
+
+
+def _offsets(offsets: Iterable[OffsetRecord], units: Units, words: Words) -> str:
+    parts = [
+        f"{words(OFFSETS[offset.kind])} {offset_text(math.hypot(offset.east, offset.north), units, words)}"
         if offset.kind in POSITION_OFFSETS
-        else f"{offset.kind.value} {_signed(offset.metres, units)}"
+        else f"{words(OFFSETS[offset.kind])} {_signed(offset.metres, units, words)}"
         for offset in offsets
     ]
-    return ", ".join(words) or "none"
+    return ", ".join(parts) or words("none")
 
 
 # --- replay --------------------------------------------------------------------------------------------------------
 
 
 def replay_rows(
-    position: float, duration: float, speed: float, catching_up: float | None
+    position: float, duration: float, speed: float, catching_up: float | None, words: Words
 ) -> tuple[tuple[str, str], ...]:
     """Where the recording stands."""
-    pace = "as fast as it can" if math.isinf(speed) else f"{speed:g} × real time"
-    rows = [("Position", f"{clock(position)} of {clock(duration)}"), ("Pace", pace)]
+    pace = words("{speed:g} × real time", speed=speed) if math.isfinite(speed) else words("as fast as it can")
+    place = words("{position} of {duration}", position=clock(position), duration=clock(duration))
+    rows = [(words("Position"), place), (words("Pace"), pace)]
     if catching_up is not None:
-        rows.append(("Catching up", f"{catching_up * 100:.0f} %"))
+        rows.append((words("Catching up"), f"{catching_up * 100:.0f} %"))
     return tuple(rows)

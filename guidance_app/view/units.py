@@ -1,9 +1,13 @@
-"""Numbers as a driver reads them, in the units that the settings name. Everything that comes in is SI.
+"""Numbers as a driver reads them, in the units and the language that the settings name. What comes in is SI.
 
+A unit's symbol is the same in all languages, but for the Japanese tan and chō.
 Rounding is as coarse as a glance can use: whole centimetres or inches beside the lamps, two decimals of an area.
 """
 
+from typing import assert_never
+
 from guidance_app.documents import Units
+from guidance_app.language import Words
 
 __all__ = ["area_text", "distance_text", "offset_text", "speed_text", "speed_unit"]
 
@@ -13,31 +17,33 @@ MILE = 1609.344
 ACRE = 4046.8564224
 ARE = 100.0
 HECTARE = 10_000.0
+TAN = 300 * 400 / 121
+"""300 tsubo, each 400/121 m2 by the Japanese law on measures of 1891; ten are a chō."""
 
 
-def offset_text(metres: float, units: Units) -> str:
+def offset_text(metres: float, units: Units, words: Words) -> str:
     """``12 cm``, ``1.24 m``, ``5 in``: a sideways distance without its sign, for which there is an arrow."""
     size = abs(metres)
     if units is Units.IMPERIAL:
         inches = round(size / INCH)
-        return f"{inches} in" if inches < 36 else f"{_short(size / FOOT, 1)} ft"
+        return f"{inches} in" if inches < 36 else f"{_short(size / FOOT, 1, words)} ft"
     centimetres = round(size * 100)
-    return f"{centimetres} cm" if centimetres < 100 else f"{_short(size, 2)} m"
+    return f"{centimetres} cm" if centimetres < 100 else f"{_short(size, 2, words)} m"
 
 
-def distance_text(metres: float, units: Units) -> str:
+def distance_text(metres: float, units: Units, words: Words) -> str:
     """``42 m``, ``1.2 km``, ``140 ft``: a distance along the way, never negative."""
     size = max(0.0, metres)
     if units is Units.IMPERIAL:
-        return f"{size / FOOT:.0f} ft" if size < MILE / 4 else f"{size / MILE:.1f} mi"
-    return f"{size:.0f} m" if size < 999.5 else f"{size / 1000:.1f} km"
+        return f"{size / FOOT:.0f} ft" if size < MILE / 4 else f"{words.number(size / MILE, 1)} mi"
+    return f"{size:.0f} m" if size < 999.5 else f"{words.number(size / 1000, 1)} km"
 
 
-def speed_text(speed: float, units: Units) -> str:
+def speed_text(speed: float, units: Units, words: Words) -> str:
     """``8.4``, and ``R 2.1`` in reverse; the unit is ``speed_unit``."""
     size = abs(speed) * (3600.0 / MILE if units is Units.IMPERIAL else 3.6)
-    shown = f"{size:.1f}"
-    return f"R {shown}" if speed < 0 and shown != "0.0" else shown
+    shown = words.number(size, 1)
+    return words.within("in reverse", "R {speed}", speed=shown) if speed < 0 and round(size, 1) > 0 else shown
 
 
 def speed_unit(units: Units) -> str:
@@ -45,20 +51,26 @@ def speed_unit(units: Units) -> str:
     return "mph" if units is Units.IMPERIAL else "km/h"
 
 
-def area_text(square_metres: float, units: Units) -> str:
-    """``3.42 ha``, ``8.45 ac``; Japanese fields are counted in ares, ``342 a``."""
+def area_text(square_metres: float, units: Units, words: Words) -> str:
+    """``3.42 ha``, ``8.45 ac``; Japanese fields are counted in ares, ``342 a``, or in tan and chō, ``3.45 chō``."""
     match units:
         case Units.IMPERIAL:
-            return f"{_short(square_metres / ACRE, 2)} ac"
+            return f"{_short(square_metres / ACRE, 2, words)} ac"
         case Units.JAPANESE:
-            return f"{_short(square_metres / ARE, 1)} a"
+            return f"{_short(square_metres / ARE, 1, words)} a"
+        case Units.TAN:
+            few = round(square_metres / TAN, 2) < 10
+            number = _short(square_metres / (TAN if few else 10 * TAN), 2, words)
+            return f"{number} {words('tan') if few else words('chō')}"
         case Units.METRIC:
-            return f"{_short(square_metres / HECTARE, 2)} ha"
+            return f"{_short(square_metres / HECTARE, 2, words)} ha"
+        case _:
+            assert_never(units)
 
 
-def _short(number: float, decimals: int) -> str:
+def _short(number: float, decimals: int, words: Words) -> str:
     """At most three digits and so many decimals: 1.24, 12.4, 124."""
     for places in range(decimals, 0, -1):
         if round(number, places) < 10 ** (3 - places):
-            return f"{number:.{places}f}"
-    return f"{number:.0f}"
+            return words.number(number, places)
+    return words.number(number)

@@ -344,6 +344,21 @@ def test_a_message_without_steering_has_no_number_at_all() -> None:
 
 def test_the_style_tells_what_seldom_changes() -> None:
     settings = SETTINGS.model_copy(update={"guide_implement": True, "units": Units.IMPERIAL, "sounds": False})
-    assert json.loads(style_json(settings, 1.5)) == {
-        "style": {"speed": "mph", "zones": "gggyyyrr", "guided": "implement", "ahead": "1.5 s", "sounds": False}
-    }
+    style = json.loads(style_json(settings, 1.5))["style"]
+    said = style.pop("words")
+    assert style == {"speed": "mph", "zones": "gggyyyrr", "guided": "implement", "sounds": False, "language": "en"}
+    assert said["ahead"] == "IN 1.5 s"
+    assert said["steerLeft"] == "steer left"
+    assert all(said.values())
+
+
+@pytest.mark.parametrize(
+    ("language", "number", "name", "ahead"),
+    [("ja", "1.24 m", "行程 3/24 (ライン +2)", "1.5 秒後"), ("es", "1,24 m", "pasada 3 de 24 (línea +2)", "EN 1,5 s")],
+)
+def test_the_bar_speaks_the_drivers_language(language: str, number: str, name: str, ahead: str) -> None:
+    settings = SETTINGS.model_copy(update={"language": language})
+    view = bar_of(driving(1.239), AT, settings)
+    assert view.steering is not None
+    assert (view.steering.number, view.steering.pass_text) == (number, name)
+    assert json.loads(style_json(settings, 1.5))["style"]["words"]["ahead"] == ahead

@@ -6,6 +6,7 @@ import viser
 
 from guidance_app.console.desk import Desk, Hands, Place
 from guidance_app.console.widgets import Shown, notice_html, rows_html
+from guidance_app.language import message
 
 __all__ = ["Menu"]
 
@@ -13,16 +14,17 @@ __all__ = ["Menu"]
 class Menu:
     """Leads out of the drive."""
 
-    title: ClassVar[str] = "Menu"
+    title: ClassVar[str] = message("Menu")
 
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
         self._hands = hands
+        self._words = words = hands.words
         self._sure = False
         self._rows = Shown(gui)
-        setup = gui.add_button("Fields, machines, recordings", color="gray")
-        self._end = gui.add_button("End the drive", color="red")
-        self._stay = gui.add_button("No, drive on", color="gray", visible=False)
-        self._words = Shown(gui)
+        setup = gui.add_button(words("Fields, machines, recordings"), color="gray")
+        self._end = gui.add_button(words("End the drive"), color="red")
+        self._stay = gui.add_button(words("No, drive on"), color="gray", visible=False)
+        self._warning = Shown(gui)
 
         @setup.on_click
         async def _(_: object) -> None:
@@ -48,16 +50,26 @@ class Menu:
 
     def show(self, desk: Desk) -> None:
         """Brings the words up to what is driven."""
+        words = self._words
         job = self._hands.house.manager.job
         rows = [
-            ("Tractor", job.tractor.name),
-            ("Implement", f"{job.implement.name}, {job.implement.working_width:g} m"),
+            (words("Tractor"), job.tractor.name),
+            (words("Implement"), f"{job.implement.name}, {words.digits(f'{job.implement.working_width:g}')} m"),
         ]
         if job.field is not None:
-            rows.insert(0, ("Field", job.field.name))
+            rows.insert(0, (words("Field"), job.field.name))
         self._rows.show(rows_html(rows))
-        what = "replay" if desk.replay is not None else "drive"
-        self._end.label = f"Yes, end the {what} now" if self._sure else f"End the {what}"
+        self._ask(replays=desk.replay is not None)
+
+    def _ask(self, *, replays: bool) -> None:
+        words = self._words
+        end = words("End the replay" if replays else "End the drive")
+        yes = words("Yes, end the replay now" if replays else "Yes, end the drive now")
+        warning = (
+            words("The replay ends; the recording stays.")
+            if replays
+            else words("The drive ends and cannot be resumed by a press; everything recorded stays.")
+        )
+        self._end.label = yes if self._sure else end
         self._stay.visible = self._sure
-        warning = f"The {what} ends and cannot be resumed by a press; everything recorded stays." if self._sure else ""
-        self._words.show(notice_html([warning]) if warning else "")
+        self._warning.show(notice_html([warning]) if self._sure else "")

@@ -6,26 +6,28 @@ import viser
 
 from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.widgets import Choice, Followed, Shown, notice_html, rows_html
+from guidance_app.language import message
 from guidance_app.view.status import clock, replay_rows
 
 __all__ = ["Replay"]
 
 _SPEEDS = {"½": 0.5, "1": 1.0, "2": 2.0, "5": 5.0, "10": 10.0, "50": 50.0}
-_WORDS = {speed: words for words, speed in _SPEEDS.items()}
+_NAMES = {speed: name for name, speed in _SPEEDS.items()}
 
 
 class Replay:
     """Steers the recording; there only when one is played."""
 
-    title: ClassVar[str] = "Replay"
+    title: ClassVar[str] = message("Replay")
 
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
         control = hands.replay
         if control is None:
             msg = "the replay panel needs a session that plays a recording"
             raise ValueError(msg)
+        self._words = words = hands.words
         state = control.state
-        self._play = gui.add_button("Pause", color="green")
+        self._play = gui.add_button(words("Pause"), color="green")
 
         @self._play.on_click
         async def _(_: object) -> None:
@@ -35,10 +37,10 @@ class Replay:
                 control.play()
 
         end = max(round(state.duration), 1)
-        slider = gui.add_slider("00:00", 0, end, 1, 0, marks=((0, "start"), (end, clock(state.duration))))
+        slider = gui.add_slider("00:00", 0, end, 1, 0, marks=((0, words("start")), (end, clock(state.duration))))
         self._slider = slider
         self._position = Followed(slider, lambda second: control.seek(float(second)))
-        self._speed = Choice(gui, "Speed ×", tuple(_SPEEDS), lambda words: control.set_speed(_SPEEDS[words]))
+        self._speed = Choice(gui, words("Speed ×"), tuple(_SPEEDS), lambda name: control.set_speed(_SPEEDS[name]))
         self._rows = Shown(gui)
         self._notices = Shown(gui)
 
@@ -47,9 +49,10 @@ class Replay:
         state = desk.replay
         if state is None:
             return
-        self._play.label = "Pause" if state.playing else ("Play again" if state.ended else "Play")
+        self._play.label = self._words("Pause" if state.playing else ("Play again" if state.ended else "Play"))
         self._slider.label = clock(state.position)
         self._position.show(int(state.position))
-        self._speed.show(_WORDS.get(state.speed, ""))
-        self._rows.show(rows_html(replay_rows(state.position, state.duration, state.speed, state.catching_up)))
-        self._notices.show(notice_html(desk.snapshot.notices))
+        self._speed.show(_NAMES.get(state.speed, ""))
+        rows = replay_rows(state.position, state.duration, state.speed, state.catching_up, self._words)
+        self._rows.show(rows_html(rows))
+        self._notices.show(notice_html(self._words.say(one) for one in desk.snapshot.notices))

@@ -7,6 +7,7 @@ import viser
 from guidance_app.console.desk import Desk, Hands, Place
 from guidance_app.console.widgets import Shown, notice_html
 from guidance_app.documents import Implement, Job, Operation, Receiver, Tractor
+from guidance_app.language import message
 from guidance_app.store import load_job
 
 __all__ = ["Start"]
@@ -15,21 +16,25 @@ __all__ = ["Start"]
 class Start:
     """Begins a drive."""
 
-    title: ClassVar[str] = "Start"
+    title: ClassVar[str] = message("Start")
 
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
         self._hands = hands
-        self._words = Shown(gui)
+        words = hands.words
+        said = Shown(gui)
         store = hands.house.store
         operations = () if store is None else store.list(Operation)
         for stored in operations:
             self._offer(gui, stored.document)
         if not operations:
-            self._words.show(notice_html(["No operation is registered yet: drive now, or set up field and machines."]))
-        with gui.add_folder("Drive now"):
-            self._width = gui.add_number("Working width (m)", 3.0, min=0.3, max=60.0, step=0.1)
-            self._source = gui.add_text("Receiver", "sim:")
-            now = gui.add_button("Drive now", color="green")
+            nothing = words("No operation is registered yet: drive now, or set up field and machines.")
+            said.show(notice_html([nothing]))
+        with gui.add_folder(words("Drive now")):
+            self._width = gui.add_number(
+                words("{title} ({unit})", title=words("Working width"), unit="m"), 3.0, min=0.3, max=60.0, step=0.1
+            )
+            self._source = gui.add_text(words("Receiver"), "sim:")
+            now = gui.add_button(words("Drive now"), color="green")
 
         @now.on_click
         async def _(_: object) -> None:

@@ -6,6 +6,7 @@ import viser
 
 from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.widgets import STYLE, Shown, notice_line_html, tiles_html, words_html
+from guidance_app.language import message
 from guidance_app.model import SetWork
 from guidance_app.view.status import work_view
 
@@ -15,14 +16,15 @@ __all__ = ["Summary"]
 class Summary:
     """Numbers and the work button."""
 
-    title: ClassVar[str] = "Summary"
+    title: ClassVar[str] = message("Summary")
 
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
+        self._words = words = hands.words
         gui.add_html(STYLE)
         self._notices = Shown(gui)
         self._tiles = Shown(gui)
         self._fix = Shown(gui)
-        self._work = gui.add_button("Work", color="gray", hint="Lower or lift the implement")
+        self._work = gui.add_button(words("Work"), color="gray", hint=words("Lower or lift the implement"))
 
         @self._work.on_click
         async def _(_: object) -> None:
@@ -30,8 +32,8 @@ class Summary:
 
     def show(self, desk: Desk) -> None:
         """Brings the numbers up to now."""
-        view = work_view(desk.snapshot, desk.now, desk.units)
-        self._notices.show(notice_line_html(view.notices))
+        view = work_view(desk.snapshot, desk.now, desk.units, self._words)
+        self._notices.show(notice_line_html(view.notices, self._words))
         self._tiles.show(tiles_html(view.figures))
         self._fix.show(words_html(view.fix, view.fix_level))
         self._work.label = view.work_words

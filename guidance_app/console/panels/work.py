@@ -7,6 +7,7 @@ import viser
 
 from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.widgets import Choice, buttons
+from guidance_app.language import Words, message
 from guidance_app.model import (
     DropOffset,
     LineHere,
@@ -22,28 +23,41 @@ from guidance_app.view.status import neighbour, nudge_steps, work_view
 
 __all__ = ["Work"]
 
-_MODES = {"Auto": WorkMode.AUTO, "Button": WorkMode.BUTTON, "Speed": WorkMode.SPEED, "Switch": WorkMode.SWITCH}
-_WORDS = {mode: words for words, mode in _MODES.items()}
+
+def _modes(words: Words) -> dict[WorkMode, str]:
+    return {
+        WorkMode.AUTO: words("Auto"),
+        WorkMode.BUTTON: words("Button"),
+        WorkMode.SPEED: words("Speed"),
+        WorkMode.SWITCH: words("Switch"),
+    }
 
 
 class Work:
     """Posts commands; every row says in its label what is."""
 
-    title: ClassVar[str] = "Work"
+    title: ClassVar[str] = message("Work")
 
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
         self._hands = hands
+        self._words = words = hands.words
         post = hands.post
         self._pass = buttons(
             gui,
-            "No line",
-            (("◀ Line", lambda: self._take(-1)), ("Line ▶", lambda: self._take(1)), ("Skip", lambda: post(SkipPass()))),
+            words("No line"),
+            (
+                (words("◀ Line"), lambda: self._take(-1)),
+                (words("Line ▶"), lambda: self._take(1)),
+                (words("Skip"), lambda: post(SkipPass())),
+            ),
         )
         steps = nudge_steps(hands.desk().units)
-        self._line = buttons(gui, "Line", tuple((words, partial(post, Nudge(metres))) for words, metres in steps))
-        here = (("Here", lambda: post(LineHere())), ("As planned", self._drop_offsets))
-        self._way = buttons(gui, "Line", (*here, ("Other way", lambda: post(ReverseDirection()))))
-        self._mode = Choice(gui, "Works by", tuple(_MODES), lambda words: post(SetWorkMode(_MODES[words])))
+        self._line = buttons(gui, words("Line"), tuple((name, partial(post, Nudge(metres))) for name, metres in steps))
+        here = ((words("Here"), lambda: post(LineHere())), (words("As planned"), self._drop_offsets))
+        self._way = buttons(gui, words("Line"), (*here, (words("Other way"), lambda: post(ReverseDirection()))))
+        self._names = _modes(words)
+        modes = {name: mode for mode, name in self._names.items()}
+        self._mode = Choice(gui, words("Works by"), tuple(modes), lambda name: post(SetWorkMode(modes[name])))
 
     def _take(self, step: int) -> None:
         number = neighbour(self._hands.desk().snapshot, step)
@@ -56,7 +70,7 @@ class Work:
 
     def show(self, desk: Desk) -> None:
         """Brings labels and marks up to what is."""
-        view = work_view(desk.snapshot, desk.now, desk.units)
+        view = work_view(desk.snapshot, desk.now, desk.units, self._words)
         self._pass.label = view.pass_words
         self._line.label = view.line_words
-        self._mode.show(_WORDS[desk.snapshot.work_mode])
+        self._mode.show(self._names[desk.snapshot.work_mode])

@@ -6,6 +6,7 @@ import viser
 
 from guidance_app.console.desk import Desk, Hands, Place
 from guidance_app.console.widgets import STYLE, Shown, notice_html
+from guidance_app.language import message
 
 __all__ = ["Yard"]
 
@@ -13,15 +14,16 @@ __all__ = ["Yard"]
 class Yard:
     """Says what goes on behind the forms."""
 
-    title: ClassVar[str] = "Setup"
+    title: ClassVar[str] = message("Setup")
 
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
         gui.add_html(STYLE)
         self._hands = hands
+        self._words = words = hands.words
         self._problems = Shown(gui)
-        self._back = gui.add_button("Back to the drive", color="green")
+        self._back = gui.add_button(words("Back to the drive"), color="green")
         store = hands.house.store
-        problems = () if store is None else tuple(one.sentence for one in store.problems)
+        problems = () if store is None else tuple(words.say(one.sentence) for one in store.problems)
         self._problems.show(notice_html(problems))
 
         @self._back.on_click
@@ -31,4 +33,4 @@ class Yard:
     def show(self, desk: Desk) -> None:
         """Brings the button up to what is driven."""
         self._back.visible = self._hands.house.driving
-        self._back.label = "Back to the replay" if desk.replay is not None else "Back to the drive"
+        self._back.label = self._words("Back to the replay" if desk.replay is not None else "Back to the drive")
