@@ -179,6 +179,12 @@ class Receiver(Document):
     source: str = Field(
         "sim:", title="Source", max_length=300, description="serial:// tcp:// udp:// gpsd:// file: sim:"
     )
+    attitude_source: str | None = Field(
+        None,
+        title="Attitude sensor",
+        max_length=300,
+        description="Only when it has a port of its own, in the same words as the source",
+    )
     filter: str = Field("adaptive", title="Filter", max_length=40)
     filter_on: bool = Field(default=True, title="Filtering")
     measuring_time: float = quantity(

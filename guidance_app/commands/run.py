@@ -36,6 +36,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser.add_argument(
         "--resume", action="store_true", help="go on with the last drive, which was cut off, with its documents"
     )
+    parser.add_argument("--attitude", metavar="URI", help="an attitude sensor on a port of its own, in the same words")
     add_job_options(parser)
     add_data_option(parser)
     add_console_options(parser)
@@ -46,11 +47,14 @@ def run(arguments: argparse.Namespace) -> int:
     """Drives until stopped."""
     data = chosen_data_folder(arguments)
     if arguments.source is None:
+        if arguments.attitude is not None:
+            msg = "--attitude is the sensor beside a receiver: name the receiver by --source"
+            raise UseError(msg)
         if arguments.resume:
             msg = "--resume goes on with a drive: name its receiver by --source"
             raise UseError(msg)
         return serve(None, arguments, data, "nothing is driven yet: choose at the screen")
-    source = open_source(arguments.source)
+    source = open_source(arguments.source, arguments.attitude)
     found = resumable(data)
     if arguments.resume:
         session = _resumed(found, source, data)

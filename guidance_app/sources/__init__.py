@@ -1,4 +1,4 @@
-"""Where bytes come from. One source a file; a URI picks it: ``file:run.nmea``, ``sim:``.
+"""Where bytes come from. One source a file; a URI picks it: ``serial:///dev/ttyUSB0``, ``file:run.nmea``, ``sim:``.
 
 A source only reads. It says what it opened (``SourceUp``), gives the bytes with their times (``Chunk``), and says why
 it ended (``SourceDown``); it never raises once it is open. A source that is not ``live`` gives its chunks as fast as
@@ -11,7 +11,7 @@ import threading
 from collections.abc import Callable, Iterator, Mapping
 from typing import Protocol, cast
 
-from guidance_app.model import Chunk, SourceDown, SourceUp
+from guidance_app.model import ATTITUDE, RECEIVER, Chunk, SourceDown, SourceUp
 
 __all__ = ["SOURCES", "Opener", "Source", "SourceError", "SourceEvent", "open_source"]
 
@@ -41,14 +41,29 @@ class Source(Protocol):
 Opener = Callable[[str], Source]
 
 SOURCES: Mapping[str, str] = {
+    "serial": "guidance_app.sources.serial_port:open_serial",
+    "tcp": "guidance_app.sources.tcp:open_tcp",
+    "udp": "guidance_app.sources.udp:open_udp",
+    "gpsd": "guidance_app.sources.gpsd:open_gpsd",
     "file": "guidance_app.sources.file:open_file",
     "sim": "guidance_app.sources.simulated:open_simulated",
 }
 """URI scheme -> opener, as ``module:function``. Named, not imported: a source's own libraries load when it is used."""
 
 
-def open_source(uri: str) -> Source:
-    """The source that ``uri`` names, keeping its time by itself. Raises ``SourceError``."""
+def open_source(uri: str, attitude: str | None = None) -> Source:
+    """The source that ``uri`` names, keeping its time by itself; with that of an attitude sensor beside it, if any.
+
+    Raises ``SourceError``.
+    """
+    receiver = _open_one(uri)
+    if attitude is None:
+        return receiver
+    merged = cast("Callable[[Mapping[str, Source]], Source]", _named("guidance_app.sources.merged:Merged"))
+    return merged({RECEIVER: receiver, ATTITUDE: _open_one(attitude)})
+
+
+def _open_one(uri: str) -> Source:
     scheme = uri.partition(":")[0].lower()
     if ":" not in uri or scheme not in SOURCES:
         known = ", ".join(f"{name}:" for name in SOURCES)

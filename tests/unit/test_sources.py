@@ -41,5 +41,5 @@ def test_a_scheme_may_be_written_in_capitals(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("uri", ["", "run.nmea", "/dev/ttyUSB0", "ftp://host/run", "nothing:"])
 def test_an_unknown_scheme_is_answered_with_those_that_are_known(uri: str) -> None:
-    with pytest.raises(SourceError, match=r"file:, sim:"):
+    with pytest.raises(SourceError, match=r"serial:, tcp:, udp:, gpsd:, file:, sim:"):
         open_source(uri)
