@@ -145,9 +145,11 @@ def test_a_port_that_another_program_holds_is_said_and_taken_when_it_is_free(cab
         [
             sys.executable,
             "-c",
-            "import serial, sys\n"
-            f"port = serial.Serial({str(cable.path)!r}, exclusive=True)\n"
-            "print('held', flush=True)\nsys.stdin.read()",
+            (
+                "import serial, sys\n"
+                f"port = serial.Serial({str(cable.path)!r}, exclusive=True)\n"
+                "print('held', flush=True)\nsys.stdin.read()"
+            ),
         ],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,

@@ -17,7 +17,7 @@ PATIENCE_S = 10.0
 
 
 class Cable:
-    """A port at ``path`` while it is plugged in. Closing the master of a pseudo terminal is what an unplug looks like."""
+    """A port at ``path`` while it is plugged in. A pseudo terminal whose master is closed looks like an unplugged one."""
 
     def __init__(self, path: Path) -> None:
         self.path = path

@@ -87,8 +87,10 @@ def test_tcp_says_once_that_nobody_listens_and_goes_on_trying() -> None:
     with reading(quick(f"tcp://127.0.0.1:{port}")) as heard:
         heard.wait(lambda one: bool(one.told))
         assert heard.told == [
-            f"down: 127.0.0.1 is there, but nothing answers at its port {port}: is the port right, and its server"
-            " running?"
+            (
+                f"down: 127.0.0.1 is there, but nothing answers at its port {port}: is the port right, and its server"
+                " running?"
+            )
         ]
         with server(lambda connection, _: connection.sendall(epoch(NOON)), port):
             heard.wait(lambda one: one.bytes > 0)
