@@ -17,7 +17,7 @@ PATIENCE_S = 10.0
 
 
 class Cable:
-    """A port at ``path`` while it is plugged in. A pseudo terminal whose master is closed looks like an unplugged one."""
+    """A port at ``path`` while it is plugged in. Closing a pseudo terminal's master unplugs it."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
