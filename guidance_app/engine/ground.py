@@ -1,6 +1,6 @@
 """What there is to guide along: the field, its plan, or the lines beside a first straight stretch."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -11,9 +11,11 @@ from guidance_app.geodesy import FieldFrame
 from guidance_app.guidance.family import ParallelLines, PassFamily
 from guidance_app.guidance.itinerary import passes_of
 from guidance_app.guidance.planning import PlanError, plan_operation, request_from_documents
+from guidance_app.guidance.replanning import Standing, replan
+from guidance_app.guidance.request import PlanRequest
 from guidance_app.model import FloatArray, Pass, Plan
 
-__all__ = ["Ground", "ground_beside", "ground_of", "mainland_of", "shown_beside"]
+__all__ = ["Ground", "ground_beside", "ground_of", "mainland_of", "rest_of", "shown_beside"]
 
 SHOWN_TO_A_SIDE = 12
 """Without a field so many passes are shown to either side of the target."""
@@ -21,12 +23,16 @@ SHOWN_TO_A_SIDE = 12
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ground:
-    """The field's polygon in its frame, and the plan or the family of passes on it. All may be None but the frame."""
+    """The field's polygon in its frame, and the plan or the family of passes on it. All may be None but the frame.
+
+    ``request`` is what the plan was made from, so that its rest can be planned again.
+    """
 
     frame: FieldFrame
     polygon: shapely.Polygon | None = None
     rings: tuple[FloatArray, ...] = ()
     plan: Plan | None = None
+    request: PlanRequest | None = None
     family: PassFamily | None = None
     passes: tuple[Pass, ...] = ()
     notices: tuple[str, ...] = ()
@@ -49,7 +55,15 @@ def ground_of(job: Job) -> Ground | None:
         plan = plan_operation(polygon, request)
     except PlanError as error:
         return Ground(frame, polygon, rings, notices=(f"No plan: {error}. Guiding along the first straight stretch.",))
-    return Ground(frame, polygon, rings, plan, passes=passes_of(plan), notices=plan.warnings)
+    return Ground(frame, polygon, rings, plan, request, passes=passes_of(plan), notices=plan.warnings)
+
+
+def rest_of(ground: Ground, done: frozenset[int], standing: Standing) -> Ground | None:
+    """The same ground with what is left planned again; None without a plan. Raises ``PlanError`` when all is done."""
+    if ground.plan is None or ground.request is None or ground.polygon is None:
+        return None
+    plan = replan(ground.plan, done, standing, ground.polygon, ground.request)
+    return replace(ground, plan=plan, passes=passes_of(plan), notices=plan.warnings)
 
 
 def ground_beside(ground: Ground, stretch: tuple[tuple[float, float], tuple[float, float]], spacing: float) -> Ground:

@@ -9,10 +9,12 @@ from dataclasses import replace
 from typing import Any
 
 from guidance_app.documents import HitchKind, Job
-from guidance_app.engine.ground import Ground, ground_beside, ground_of, mainland_of, shown_beside
+from guidance_app.engine.ground import Ground, ground_beside, ground_of, mainland_of, rest_of, shown_beside
 from guidance_app.estimation.reference_point import carried, offset_point
 from guidance_app.geodesy import FieldFrame
 from guidance_app.guidance.coverage import Coverage
+from guidance_app.guidance.pass_work import PassWork
+from guidance_app.guidance.request import PlanError
 from guidance_app.guidance.straight import StraightStretch
 from guidance_app.guidance.tracking import Tracker
 from guidance_app.guidance.trail import TrackTrail
@@ -20,6 +22,7 @@ from guidance_app.guidance.work import WorkSwitch
 from guidance_app.language import message, sentence
 from guidance_app.model import (
     Command,
+    CoverageTotals,
     DropOffset,
     Guidance,
     LineHere,
@@ -57,10 +60,12 @@ class WorkDone:
         self._tracker: Tracker | None = None
         self._switch = WorkSwitch(job.implement.working_width)
         self._track = TrackTrail()
+        self._pass_work = PassWork(self._behind)
         self._guidance: Guidance | None = None
         self._guided: tuple[Pose, tuple[float, float]] | None = None
         self._mask = (1 << job.implement.sections) - 1
         self._sections = (True,) * job.implement.sections
+        self._later: frozenset[int] = frozenset()
         plan = None if self._ground is None else self._ground.plan
         if plan is not None:
             self._tracker = Tracker(plan, plan.spacing, behind=self._behind)
@@ -87,6 +92,7 @@ class WorkDone:
             _stretch=self._stretch.fork(),
             _tracker=None if self._tracker is None else self._tracker.fork(),
             _track=self._track.fork(),
+            _pass_work=self._pass_work.fork(),
             _coverage=self._coverage.fork(),
         )
         return other
@@ -107,6 +113,7 @@ class WorkDone:
             self._switch = self._switch.after(pose, self._guidance, reported)
         number = None if self._guidance is None else self._guidance.target.number
         self._coverage.step(implement, pose.t, self._working, number, self._mask)
+        self._pass_work.step(self._guidance, working=self._working)
         self._track.step(pose.t, pose.east, pose.north, pose.heading)
 
     @property
@@ -178,15 +185,8 @@ class WorkDone:
     def _obey(self, tracker: Tracker, command: Command, arrival: float) -> str | None:
         otherwise: str
         match command:
-            case TakePass():
-                done, otherwise = (
-                    tracker.take(command.number),
-                    sentence("There is no line {number}.", number=command.number),
-                )
-            case SkipPass():
-                done, otherwise = tracker.skip(), message("There is no other line to go on with.")
-            case ReverseDirection():
-                done, otherwise = tracker.reverse(), message("There is no line yet to be driven the other way.")
+            case TakePass() | SkipPass() | ReverseDirection():
+                return self._change_pass(tracker, command)
             case Nudge():
                 done, otherwise = tracker.shift(command.metres, command.kind, arrival), TOO_FAR
             case LineHere():
@@ -195,11 +195,47 @@ class WorkDone:
             case DropOffset():
                 done, otherwise = tracker.drop(command.kind), TOO_FAR
             case ReplanRest():
-                done, otherwise = False, message("There is no plan: lines are driven as they come.")
+                return self._plan_rest(tracker)
             case _:
                 msg = f"{type(command).__name__} is not a command about lines"
                 raise TypeError(msg)
         return None if done else otherwise
+
+    def _change_pass(self, tracker: Tracker, command: TakePass | SkipPass | ReverseDirection) -> str | None:
+        """Another pass or another way round; with a plan the rest follows it, unless that pass is done already."""
+        match command:
+            case TakePass():
+                if not tracker.take(command.number):
+                    return sentence("There is no line {number}.", number=command.number)
+                self._later -= {command.number}
+                if command.number in tracker.done:
+                    return None
+            case SkipPass():
+                left = None if self._guidance is None else self._guidance.target.number
+                if left is None or not tracker.skip():
+                    return sentence("There is no other line to go on with.")
+                self._later |= {left}
+            case ReverseDirection():
+                if not tracker.reverse():
+                    return sentence("There is no line yet to be driven the other way.")
+        if self._ground is not None and self._ground.plan is not None:
+            self._plan_rest(tracker)
+        return None
+
+    def _plan_rest(self, tracker: Tracker) -> str | None:
+        """Plans what is left from where the tractor is; the pass being worked stays the target."""
+        if self._ground is None or self._guided is None:
+            return sentence("Not yet: there is no position to plan from.")
+        standing = replace(tracker.standing(*self._guided), later=self._later)
+        try:
+            ground = rest_of(self._ground, tracker.done, standing)
+        except PlanError as error:
+            return sentence("The rest cannot be planned: {reason}.", reason=error.args[0])
+        if ground is None or ground.plan is None:
+            return sentence("There is no plan: lines are driven as they come.")
+        tracker.follow(ground.plan)
+        self._ground = ground
+        return None
 
     def ahead(self, prediction: Prediction) -> Prediction:
         """The prediction with its errors against the target pass, when there is one."""
@@ -224,6 +260,7 @@ class WorkDone:
             "sections": self._sections,
             "work_mode": self._switch.mode,
             "totals": self._coverage.totals,
+            "pass_totals": self._pass_totals,
             "track": self._track.trail,
             "worked": self._coverage.worked,
             "offsets": (*marks, *lines),
@@ -238,6 +275,14 @@ class WorkDone:
                 "ground_version": self._version,
             }
         return shown
+
+    @property
+    def _pass_totals(self) -> CoverageTotals | None:
+        """Of the target pass; what is left of it is what was driven by and not worked."""
+        if self._guidance is None:
+            return None
+        missed = self._pass_work.missed * self._job.implement.working_width
+        return replace(self._coverage.of_pass(self._guidance.target.number), left=missed)
 
     def _look_for_a_line(self, pose: Pose) -> None:
         stretch = self._stretch.step(pose)

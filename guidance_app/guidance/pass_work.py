@@ -1,0 +1,75 @@
+"""What of a pass has been driven by, and what of that was left out: metres along it, by its implement.
+
+A stretch that is worked when the tractor comes again is no longer left out, whichever way it is driven.
+"""
+
+import copy
+
+import numpy as np
+
+from guidance_app.guidance.progress import Progress
+from guidance_app.model import Guidance, Pass
+
+__all__ = ["PassWork"]
+
+
+class PassWork:
+    """Remembers two unions of stretches a pass: driven along, and worked. ``behind`` is as the tracker's."""
+
+    def __init__(self, behind: float = 0.0) -> None:
+        self._behind = behind
+        self._driven = Progress()
+        self._worked = Progress()
+        self._keys: dict[tuple[int, float], int] = {}
+        self._target: Pass | None = None
+        self._key = 0
+        self._length = 0.0
+        self._last: float | None = None
+
+    def fork(self) -> "PassWork":
+        """An independent copy."""
+        other = copy.copy(self)
+        vars(other).update(_driven=self._driven.fork(), _worked=self._worked.fork(), _keys=dict(self._keys))
+        return other
+
+    def step(self, guidance: Guidance | None, *, working: bool) -> None:
+        """One epoch further. A jump, a turn and a way beside the pass leave nothing out."""
+        if guidance is None or not guidance.on_pass:
+            self._last = None
+            return
+        if guidance.target is not self._target:
+            self._begin(guidance.target)
+        place = self._place(guidance)
+        if self._last is not None:
+            for start, end in self._stretches(self._last, place, closed=guidance.target.closed):
+                self._driven.add(self._key, start, end)
+                if working:
+                    self._worked.add(self._key, start, end)
+        self._last = place
+
+    def _stretches(self, start: float, end: float, *, closed: bool) -> tuple[tuple[float, float], ...]:
+        """What lies between two places, in two where a lap's end was crossed."""
+        if not closed or abs(end - start) <= 0.5 * self._length:
+            return ((start, end),)
+        return (0.0, min(start, end)), (max(start, end), self._length)
+
+    @property
+    def missed(self) -> float:
+        """Metres of the present pass that were driven along and not worked."""
+        return max(self._driven.worked(self._key) - self._worked.worked(self._key), 0.0)
+
+    def _begin(self, target: Pass) -> None:
+        """A pass that was cut short when the rest was planned again counts as another one."""
+        points = np.vstack([target.points, target.points[:1]]) if target.closed else target.points
+        self._length = float(np.hypot(*np.diff(points, axis=0).T).sum())
+        self._key = self._keys.setdefault((target.number, round(self._length, 2)), len(self._keys))
+        self._target, self._last = target, None
+
+    def _place(self, guidance: Guidance) -> float:
+        """Metres along the pass as planned, of the implement."""
+        along = guidance.along_track - self._behind
+        if guidance.target.closed:
+            along %= self._length
+        elif not guidance.target.endless:
+            along = min(max(along, 0.0), self._length)
+        return self._length - along if guidance.against else along
