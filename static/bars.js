@@ -75,11 +75,12 @@ export function makeBars(canvas, style) {
     paint();
   };
 
-  const lamps = (place, lit) => {
+  // In a turn the lamps keep one calm colour: a turn is driven to some decimetres, and nothing is wrong.
+  const lamps = (place, lit, calm = false) => {
     const count = style.zones.length;
     const room = (place.span - place.pill) / 2 - 6;
     const width = room / count;
-    const colour = lit ? zoneColour(Math.abs(lit)) : colours.off;
+    const colour = lit ? (calm ? colours.mark : zoneColour(Math.abs(lit))) : colours.off;
     for (const direction of [-1, 1]) {
       for (let number = 1; number <= count; number++) {
         const x = place.middle + direction * (place.pill / 2 + 6 + (number - 0.5) * width);
@@ -117,10 +118,12 @@ export function makeBars(canvas, style) {
     const [amount, unit] = message.d.split(" ");
     const direction = steerTo(message);
     const onLine = message.k === 0;
-    const colour = onLine ? colours.green : zoneColour(Math.abs(message.k));
-    const ink = onLine ? colours["on-green"] : colours.ink;
+    const calm = message.m !== undefined;
+    const colour = calm ? colours.mark : onLine ? colours.green : zoneColour(Math.abs(message.k));
+    const filled = onLine && !calm;
+    const ink = filled ? colours["on-green"] : colours.ink;
     box(place.middle - place.pill / 2 + 1.5, place.rowTop + 1.5, place.pill - 3, place.rowHeight - 3, 12);
-    pen.fillStyle = onLine ? colour : colours.ground;
+    pen.fillStyle = filled ? colour : colours.ground;
     pen.fill();
     pen.strokeStyle = colour;
     pen.lineWidth = 3;
@@ -128,7 +131,8 @@ export function makeBars(canvas, style) {
 
     const caption = place.phone ? 11 : 13;
     font(caption, 700);
-    words(capitals(style.words[onLine ? "onTheLine" : direction < 0 ? "steerLeft" : "steerRight"]), place.middle, place.rowTop + 12, ink);
+    const said = message.m ?? style.words[onLine ? "onTheLine" : direction < 0 ? "steerLeft" : "steerRight"];
+    words(capitals(said), place.middle, place.rowTop + 12, ink);
 
     const arrow = place.large * 0.6;
     const room = place.pill - 2 * (arrow * 0.74 + 16);
@@ -147,7 +151,7 @@ export function makeBars(canvas, style) {
     words(amount, start, y + large * 0.04, ink, "left");
     if (direction) {
       const reach = place.pill / 2 - arrow * 0.42 - 12;
-      steerArrow(place.middle + direction * reach, y, arrow, direction, onLine ? ink : colour);
+      steerArrow(place.middle + direction * reach, y, arrow, direction, filled ? ink : colour);
     }
   };
 
@@ -272,7 +276,7 @@ export function makeBars(canvas, style) {
     if (state === "silent") {
       noData(place);
     } else if (state === "guide") {
-      lamps(place, message.k);
+      lamps(place, message.k, message.m !== undefined);
       number(place, message);
       prediction(place, message);
       labels(place);

@@ -59,7 +59,7 @@ const sayAttributes = (known, { words, language }) => {
   bar.dataset.sequence = known.q ?? "";
   bar.dataset.fixAge = known.a === undefined ? "" : (known.a / 1000).toFixed(3);
   const { steer, number, reason } = shared.drawn;
-  const steering = { none: words.onTheLine, left: `${words.steerLeft} ${number}`, right: `${words.steerRight} ${number}` };
+  const steering = { none: known.m ? words.onTheTurn : words.onTheLine, left: `${words.steerLeft} ${number}`, right: `${words.steerRight} ${number}` };
   const spoken = reason ?? steering[steer];
   if (document.documentElement.lang !== language) document.documentElement.lang = language;
   if (canvas.getAttribute("aria-label") !== spoken) canvas.setAttribute("aria-label", spoken);
@@ -71,7 +71,7 @@ const sayWords = (known, style) => {
   setText(passDetail, detail ?? "");
   const [distance, seconds, level, fits] = known.u ?? ["", "", "far", 1];
   const { words } = style;
-  const turn = [words.turn.replace("{distance}", distance), seconds, fits ? "" : words.tight];
+  const turn = [(known.m ? words.inTurn : words.turn).replace("{distance}", distance), seconds, fits ? "" : words.tight];
   setText(turnLine, distance && turn.filter((part) => part).join(" · "));
   turnLine.dataset.level = level;
   setText(workLine, known.w === undefined ? "" : known.w ? words.working : words.lifted);

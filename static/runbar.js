@@ -17,6 +17,8 @@ const UNTOLD = {
   heading: "",
   ahead: "",
   turn: "",
+  inTurn: "",
+  onTheTurn: "",
   tight: "",
   working: "",
   lifted: "",

@@ -5,6 +5,7 @@ the first straight stretch when there is no plan. Like the engine this only sequ
 """
 
 import copy
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -18,6 +19,7 @@ from guidance_app.guidance.request import PlanError
 from guidance_app.guidance.straight import StraightStretch
 from guidance_app.guidance.tracking import Tracker
 from guidance_app.guidance.trail import TrackTrail
+from guidance_app.guidance.turning import Turning, turning_of
 from guidance_app.guidance.work import WorkSwitch
 from guidance_app.language import message, sentence
 from guidance_app.model import (
@@ -62,6 +64,7 @@ class WorkDone:
         self._track = TrackTrail()
         self._pass_work = PassWork(self._behind)
         self._guidance: Guidance | None = None
+        self._turning: Turning | None = None
         self._guided: tuple[Pose, tuple[float, float]] | None = None
         self._mask = (1 << job.implement.sections) - 1
         self._sections = (True,) * job.implement.sections
@@ -107,7 +110,7 @@ class WorkDone:
         guided = self._guided_point(pose, implement)
         self._guided = pose, guided
         if self._tracker is not None:
-            self._guidance = self._tracker.step(pose, guided, self._working)
+            self._guide(self._tracker, pose, guided)
             self._show_around_target()
         if counted:
             self._switch = self._switch.after(pose, self._guidance, reported)
@@ -126,6 +129,14 @@ class WorkDone:
             return implement.hitch_back + implement.drawbar
         return implement.offset_back
 
+    def _guide(self, tracker: Tracker, pose: Pose, point: tuple[float, float]) -> None:
+        """Guidance along the target, and along the turn that leads there."""
+        guidance = tracker.step(pose, point, self._working)
+        self._turning = turning_of(self._turning, guidance, pose, point)
+        if self._turning is not None and guidance is not None and guidance.turn is not None:
+            guidance = replace(guidance, turn=self._turning.shown(guidance.turn, pose.heading))
+        self._guidance = guidance
+
     def _guided_point(self, pose: Pose, implement: tuple[float, float, float]) -> tuple[float, float]:
         """The implement's working point, or the point of the rear axle's line that runs ahead of it on the pass."""
         if self._job.settings.guide_implement:
@@ -139,7 +150,7 @@ class WorkDone:
     def end(self) -> None:
         """The drive is over: nothing works and nothing is guided."""
         self.lift()
-        self._guidance = self._tracker = None
+        self._guidance = self._tracker = self._turning = None
 
     @property
     def _working(self) -> bool:
@@ -178,7 +189,7 @@ class WorkDone:
         if refused is not None:
             return refused
         if self._guided is not None:
-            self._guidance = tracker.step(*self._guided, self._working)
+            self._guide(tracker, *self._guided)
         self._version += 1
         return None
 
@@ -238,12 +249,15 @@ class WorkDone:
         return None
 
     def ahead(self, prediction: Prediction) -> Prediction:
-        """The prediction with its errors against the target pass, when there is one."""
+        """The prediction with its errors against the turn being driven or the target pass, when there is one."""
         if self._tracker is None or self._guided is None:
             return prediction
         later = prediction.pose
         point = carried(self._guided[1], self._guided[0], later)
-        errors = self._tracker.errors_at(*point, later.heading)
+        errors = None
+        if self._turning is not None:
+            errors = self._turning.errors_at(point, later.heading, math.dist(point, self._guided[1]))
+        errors = errors or self._tracker.errors_at(*point, later.heading)
         return prediction if errors is None else replace(prediction, cross_track=errors[0], heading_error=errors[1])
 
     @property

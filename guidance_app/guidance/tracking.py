@@ -378,7 +378,7 @@ class Tracker:
         key = reading.line.key
         coming = self._itinerary.way_to(key)
         if not self._reached and coming is not None and coming.passes_by(seen.east, seen.north, self._spacing):
-            return _guide(coming, 0.0, 0.0)
+            return TurnGuide(0.0, 0.0, coming.polyline.vertices, fits=coming.fits, driven=True)
         leaving = self._itinerary.way_from(key)
         if leaving is None or remaining is None or reading.against or self._following(key) != key + 1:
             return None

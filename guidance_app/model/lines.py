@@ -35,12 +35,20 @@ class Pass:
 
 @dataclass(frozen=True, slots=True)
 class TurnGuide:
-    """The turn that follows the target pass: how far away, and its path of shape (N, 2)."""
+    """The turn that follows the target pass: how far away, and its path of shape (N, 2).
+
+    ``driven`` marks the turn that leads to the target pass while the tractor is in it. It has a ``cross_track`` and a
+    ``heading_error`` of the guided point against the path, seen the way the tractor points, and metres ``to_go``.
+    """
 
     distance: float
     seconds: float | None
     points: FloatArray = field(compare=False)
     fits: bool = True
+    driven: bool = False
+    cross_track: float | None = None
+    heading_error: float | None = None
+    to_go: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

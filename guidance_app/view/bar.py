@@ -109,7 +109,8 @@ class Steering:
 
     ``lamps`` counts lit lamps, positive on the right: steer right; 0 is the middle alone. ``number`` is the unsigned
     distance with its unit. ``predicted`` is the mark's place on the prediction bar, from -1 (left end) to 1, on the
-    lamps' own scale; ``lean`` its heading error in radians, positive turned right of the line.
+    lamps' own scale; ``lean`` its heading error in radians, positive turned right of the line. In a turn that is being
+    driven all of these are against its path, and ``turning`` says where it leads.
     """
 
     cross_track: float
@@ -120,6 +121,7 @@ class Steering:
     predicted_number: str = ""
     lean: float | None = None
     turn: TurnView | None = None
+    turning: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,10 +206,15 @@ def _age_text(age: float, words: Words) -> str:
 def _steering(snapshot: Snapshot, pose: Pose, guidance: Guidance, now: float, settings: Settings) -> Steering:
     seconds = now - pose.arrival
     point = snapshot.implement[:2] if settings.guide_implement and snapshot.implement else (pose.east, pose.north)
-    off = guidance.cross_track + moved_right(guidance, pose, point, seconds)
     steps, units, words = settings.light_bar_steps, settings.units, words_for(settings.language)
+    turn = guidance.turn if guidance.turn is not None and guidance.turn.cross_track is not None else None
+    if turn is None or turn.cross_track is None:
+        off = guidance.cross_track + moved_right(guidance, pose, point, seconds)
+    else:
+        off = turn.cross_track + pose.speed * math.sin(turn.heading_error or 0.0) * seconds
     steering = Steering(
         cross_track=off,
+        turning="" if turn is None else _turning_text(guidance, words),
         lamps=_lit(off, steps),
         number=offset_text(off, units, words),
         pass_text=_pass_text(guidance, words),
@@ -216,7 +223,9 @@ def _steering(snapshot: Snapshot, pose: Pose, guidance: Guidance, now: float, se
     ahead = snapshot.prediction
     if ahead is None or ahead.cross_track is None:
         return steering
-    predicted = ahead.cross_track + moved_right(guidance, ahead.pose, (ahead.pose.east, ahead.pose.north), seconds)
+    predicted = ahead.cross_track
+    if turn is None:
+        predicted += moved_right(guidance, ahead.pose, (ahead.pose.east, ahead.pose.north), seconds)
     return replace(
         steering,
         predicted=_place(predicted, steps),
@@ -261,9 +270,20 @@ def _pass_text(guidance: Guidance, words: Words) -> str:
     return f"{words('pass {number} of {count}', number=place, count=guidance.count)} ({name})"
 
 
+def _turning_text(guidance: Guidance, words: Words) -> str:
+    """``turn to pass 4``, by the place in the driving order where there is one."""
+    target = guidance.target
+    if target.order is not None:
+        return words("turn to pass {number}", number=target.order + 1)
+    return words("turn to line {number}", number=target.number)
+
+
 def _turn(guidance: Guidance, pose: Pose, units: Units, words: Words) -> TurnView | None:
-    if guidance.turn is not None:
-        distance, seconds, fits = guidance.turn.distance, guidance.turn.seconds, guidance.turn.fits
+    turn = guidance.turn
+    if turn is not None and turn.to_go is not None:
+        return TurnView(distance_text(turn.to_go, units, words), "", TurnLevel.FAR, turn.fits)
+    if turn is not None:
+        distance, seconds, fits = turn.distance, turn.seconds, turn.fits
     elif guidance.remaining is not None:
         distance, fits = max(0.0, guidance.remaining), True
         seconds = distance / abs(pose.speed) if not pose.standing and abs(pose.speed) > 0.1 else None
@@ -292,7 +312,8 @@ def bar_json(view: BarView, sent_ms: float | None = None) -> str:
     ``q`` snapshot, ``t`` when it was sent (ms on the server's clock), ``s`` state, ``a`` age of the fix (ms), ``x``
     cross-track error (mm, positive right), ``k`` lamps (positive: steer right), ``d`` number, ``p`` place of the
     prediction (thousandths), ``e`` its number, ``h`` its lean (degrees), ``n`` pass, ``v`` speed, ``f`` fix, ``c``
-    area, ``w`` 1 while working, ``u`` turn (distance, seconds, level, 1 if it fits), ``r`` reason.
+    area, ``w`` 1 while working, ``u`` turn (distance, seconds, level, 1 if it fits), ``m`` where the turn leads that is
+    being driven, ``r`` reason.
     """
     message: dict[str, object] = {
         "q": view.sequence,
@@ -320,6 +341,7 @@ def _steering_members(steering: Steering) -> dict[str, object]:
         "e": steering.predicted_number or None,
         "h": None if steering.lean is None else round(math.degrees(steering.lean)),
         "n": steering.pass_text,
+        "m": steering.turning or None,
         "u": None if turn is None else [turn.distance, turn.seconds, turn.level.value, int(turn.fits)],
     }
 
@@ -335,7 +357,9 @@ def page_words(words: Words, look_ahead_s: float) -> dict[str, str]:
         "steerRight": words("steer right"),
         "heading": words("heading"),
         "ahead": words("IN {seconds:g} s", seconds=look_ahead_s),
-        "turn": words("turn {distance}"),
+        "turn": words("end of pass in {distance}"),
+        "inTurn": words("turn, {distance} to go"),
+        "onTheTurn": words("on the turn"),
         "tight": words("tight"),
         "working": words("working"),
         "lifted": words("implement up"),

@@ -271,7 +271,9 @@ def _nearest_gap(passes: Sequence[Pass]) -> float:
 
 
 def turn_colour(turn: TurnGuide, palette: Palette) -> Rgb:
-    """Yellow and red as on the light bar; red too where the turn does not fit."""
+    """Yellow and red as on the light bar, calm once it is being driven; red too where the turn does not fit."""
+    if turn.driven and turn.fits:
+        return palette.turn
     if not turn.fits or (turn.seconds is not None and turn.seconds < TURN_NOW_S):
         return palette.turn_now
     return palette.turn_soon if turn.seconds is not None and turn.seconds < TURN_SOON_S else palette.turn
