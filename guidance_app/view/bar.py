@@ -357,7 +357,7 @@ def page_words(words: Words, look_ahead_s: float) -> dict[str, str]:
         "steerRight": words("steer right"),
         "heading": words("heading"),
         "ahead": words("IN {seconds:g} s", seconds=look_ahead_s),
-        "turn": words("end of pass in {distance}"),
+        "turn": words("end in {distance}"),
         "inTurn": words("turn, {distance} to go"),
         "onTheTurn": words("on the turn"),
         "tight": words("tight"),

@@ -95,7 +95,7 @@ def test_the_bar_stands_over_the_whole_width_and_viser_below_it(
     )
     page.set_viewport_size({"width": size[0], "height": size[1]})
     page.wait_for_selector("#root canvas")
-    expect(page.locator("#lightbar .turn")).to_have_text("end of pass in 42 m · 8 s")
+    expect(page.locator("#lightbar .turn")).to_have_text("end in 42 m · 8 s")
     bar, canvas = page.locator("#lightbar").bounding_box(), page.locator("#lightbar canvas").bounding_box()
     root = page.locator("#root").bounding_box()
     assert bar is not None
@@ -190,7 +190,7 @@ def test_the_number_is_readable_at_arms_length(drive: Drive, page: Page) -> None
 def test_the_words_at_the_sides(drive: Drive, page: Page) -> None:
     bar = page.locator("#lightbar")
     expect(bar.locator(".pass")).to_have_text("pass 3 of 24 (line +2)")
-    expect(bar.locator(".turn")).to_have_text("end of pass in 500 m")
+    expect(bar.locator(".turn")).to_have_text("end in 500 m")
     expect(bar.locator(".work")).to_have_text("working")
     expect(bar.locator(".speed")).to_have_text("8.3km/h")
     expect(bar.locator(".fix")).to_have_text("RTK fixed, <1 s")
