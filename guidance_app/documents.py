@@ -25,6 +25,7 @@ __all__ = [
     "Operation",
     "Receiver",
     "Settings",
+    "ShiftRecord",
     "Tractor",
     "Units",
     "quantity",
@@ -262,6 +263,21 @@ class GuidanceLineDocument(BaseModel):
     geometry: LineGeometry
 
 
+class ShiftRecord(BaseModel):
+    """A move of a whole field, with when (ISO 8601) and why.
+
+    ``east`` and ``north`` in metres, in the frame of ``origin`` (longitude, latitude), so that it can be taken back.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    when: str = Field(max_length=40)
+    origin: Position
+    east: float = Field(ge=-1000, le=1000, allow_inf_nan=False)
+    north: float = Field(ge=-1000, le=1000, allow_inf_nan=False)
+    reason: str = Field("", max_length=200)
+
+
 class FieldDocument(Document):
     """A field: its boundary with exclusions, and what a person calls it."""
 
@@ -271,6 +287,7 @@ class FieldDocument(Document):
     entrance: Position | None = Field(None, title="Entrance")
     lines: list[GuidanceLineDocument] = Field(default_factory=list, max_length=200)
     notes: str = Field("", title="Notes", max_length=4000)
+    shifts: list[ShiftRecord] = Field(default_factory=list, max_length=1000)
 
 
 class Method(StrEnum):
