@@ -1,0 +1,64 @@
+"""What every way of registering works with: the frame of the map, the sketch, and the two ends of a way."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import viser
+
+from guidance_app.boundary import CheckedField
+from guidance_app.console.desk import Hands
+from guidance_app.documents import FieldDocument, Units
+from guidance_app.geodesy import FieldFrame
+from guidance_app.view.units import ACRE, ARE, HECTARE
+
+__all__ = ["Atelier", "Way", "area_words"]
+
+
+@dataclass(frozen=True, slots=True)
+class Atelier:
+    """Given to each way: ``offer`` shows what was made in the preview, ``cancel`` goes back to the list."""
+
+    gui: viser.GuiApi
+    hands: Hands
+    offer: Callable[[tuple[CheckedField, ...], str], None]
+    cancel: Callable[[], None]
+
+    def frame(self) -> FieldFrame | None:
+        """The frame of the map as it is shown; None while nothing on it has a place on earth."""
+        origin = self.hands.desk().snapshot.origin_deg
+        return None if origin is None else FieldFrame(*origin)
+
+    def unique_name(self, wanted: str) -> str:
+        """``wanted``, or with a number behind it when a field is called so already."""
+        store = self.hands.house.store
+        taken = set() if store is None else {stored.document.name for stored in store.list(FieldDocument)}
+        number = 1
+        name = wanted
+        while name in taken:
+            number += 1
+            name = f"{wanted} {number}"
+        return name
+
+
+class Way(Protocol):
+    """One way to a field, at work inside a card."""
+
+    def show(self) -> None:
+        """Brings what is shown up to now; called a few times a second."""
+        ...
+
+    def close(self) -> None:
+        """Stops listening; what was made is forgotten."""
+        ...
+
+
+def area_words(square_metres: float, units: Units) -> str:
+    """An area with two decimals, whatever its size: a preview is read, not glanced at."""
+    match units:
+        case Units.IMPERIAL:
+            return f"{square_metres / ACRE:.2f} ac"
+        case Units.JAPANESE:
+            return f"{square_metres / ARE:.2f} a"
+        case Units.METRIC:
+            return f"{square_metres / HECTARE:.2f} ha"
