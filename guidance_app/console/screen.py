@@ -285,6 +285,7 @@ class Screen:
         of the main panel.
         """
         client.place = place
+        client.wished_view = ViewMode.WHOLE_FIELD if place is Place.SETUP else ViewMode.DRIVER
         client.panels = []
         client.sketch.clear()
         gui, hands = client.handle.gui, self._hands(client)

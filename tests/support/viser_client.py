@@ -81,8 +81,15 @@ class ViserClient:
             for name, value in message["updates"].items():
                 target = control if name == "value" else control["props"]
                 target[name] = value
+        elif kind == "GuiRemoveMessage":
+            self._remove_control(message["uuid"])
         elif kind.startswith("Gui") and "uuid" in message and "props" in message:
             self.controls[message["uuid"]] = message
+
+    def _remove_control(self, uuid: str) -> None:
+        self.controls.pop(uuid, None)
+        for inner in [key for key, one in self.controls.items() if one.get("container_uuid") == uuid]:
+            self._remove_control(inner)
 
     def until(self, true: Callable[[], Any]) -> None:
         """Waits until ``true`` is, looking after each frame."""
@@ -145,11 +152,22 @@ class ViserClient:
         self._say(type="GuiUpdateMessage", uuid=control["uuid"], updates={"value": value})
 
     def set(self, label: str, value: Any) -> None:
-        """Sets a slider."""
+        """Sets a slider, a text or a list."""
         self.until(lambda: self.control(label))
         control = self.control(label)
         assert control is not None
         self._say(type="GuiUpdateMessage", uuid=control["uuid"], updates={"value": value})
+
+    def tap(self, x: float, y: float) -> None:
+        """A tap on the ground of the scene's root, from straight above."""
+        self._say(
+            type="ScenePointerMessage",
+            event_type="click",
+            ray_origin=[x, y, 50.0],
+            ray_direction=[0.0, 0.0, -1.0],
+            screen_pos=[[0.5, 0.5]],
+            modifier=None,
+        )
 
     def words(self) -> str:
         """Everything that the panels say."""

@@ -1,6 +1,7 @@
 """The panels of the console, one a file. The tables say which are shown where; a panel in none is not shown."""
 
 from guidance_app.console.desk import Panel, Place
+from guidance_app.console.panels.fields import Fields
 from guidance_app.console.panels.info import Info
 from guidance_app.console.panels.menu import Menu
 from guidance_app.console.panels.replay import Replay
@@ -26,5 +27,6 @@ PANELS: dict[str, type[Panel]] = {
 
 SETUP_PANELS: dict[str, type[Panel]] = {
     "start": Start,
+    "fields": Fields,
 }
 """While setting up, in the order of the tabs."""

@@ -13,12 +13,12 @@ from guidance_app.console.registering.atelier import Atelier, Way, area_words
 from guidance_app.console.registering.by_driving import Driving
 from guidance_app.console.registering.by_file import FromFile
 from guidance_app.console.registering.by_tapping import Tapping
-from guidance_app.console.registering.by_typing import Typing
 from guidance_app.console.registering.editing import Editing
+from guidance_app.console.registering.outside import file_of
 from guidance_app.console.registering.preview import Preview
 from guidance_app.console.widgets import Shown, buttons, notice_html, rows_html
 from guidance_app.documents import FieldDocument, Operation
-from guidance_app.exchange import WRITERS, written
+from guidance_app.exchange import WRITERS
 from guidance_app.language import message
 from guidance_app.store import Removed, Stored
 from guidance_app.view.camera import ViewMode
@@ -29,7 +29,6 @@ __all__ = ["Fields"]
 WAYS: dict[str, Callable[[Atelier], Way]] = {
     message("Tap"): Tapping,
     message("Drive"): Driving,
-    message("Type"): Typing,
     message("File"): FromFile,
 }
 
@@ -92,7 +91,13 @@ class Fields:
         new = tuple((self._words(name), lambda way=way: self._begin(way)) for name, way in WAYS.items())
         if not stored:
             self._gui.add_html(
-                notice_html([self._words("No field is registered yet. Tap its corners, drive around it, type it, or take a file.")])
+                notice_html(
+                    [
+                        self._words(
+                            "No field is registered yet. Tap its corners, drive around it, type it, or take a file."
+                        )
+                    ]
+                )
             )
         buttons(self._gui, self._words("New field"), new)
         if self._removed is not None:
@@ -121,8 +126,8 @@ class Fields:
         store = self._hands.house.store
         operations = () if store is None else store.list(Operation, document.name)
         rows = [
-            (words("area"), area_words(checked.area, units)),
-            (words("around"), distance_text(checked.perimeter, units)),
+            (words("area"), area_words(checked.area, units, words)),
+            (words("around"), distance_text(checked.perimeter, units, words)),
             (words("exclusions"), str(len(document.boundary.coordinates) - 1)),
             (words("operations"), ", ".join(one.document.name for one in operations) or "–"),
         ]
@@ -149,8 +154,7 @@ class Fields:
 
     def _export_link(self, document: FieldDocument, suffix: str) -> str:
         def make() -> Download:
-            made = written(document, suffix)
-            return Download(made.name, made.media_type, made.content)
+            return file_of(document, suffix)
 
         return link_html(self._hands.house.files.offer(make), suffix.removeprefix(".").upper())
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, assert_never
 
 import viser
 
@@ -10,7 +10,8 @@ from guidance_app.boundary import CheckedField
 from guidance_app.console.desk import Hands
 from guidance_app.documents import FieldDocument, Units
 from guidance_app.geodesy import FieldFrame
-from guidance_app.view.units import ACRE, ARE, HECTARE
+from guidance_app.language import Words
+from guidance_app.view.units import ACRE, ARE, HECTARE, TAN
 
 __all__ = ["Atelier", "Way", "area_words"]
 
@@ -53,12 +54,16 @@ class Way(Protocol):
         ...
 
 
-def area_words(square_metres: float, units: Units) -> str:
+def area_words(square_metres: float, units: Units, words: Words) -> str:
     """An area with two decimals, whatever its size: a preview is read, not glanced at."""
     match units:
         case Units.IMPERIAL:
-            return f"{square_metres / ACRE:.2f} ac"
+            return f"{words.number(square_metres / ACRE, 2)} ac"
         case Units.JAPANESE:
-            return f"{square_metres / ARE:.2f} a"
+            return f"{words.number(square_metres / ARE, 2)} a"
         case Units.METRIC:
-            return f"{square_metres / HECTARE:.2f} ha"
+            return f"{words.number(square_metres / HECTARE, 2)} ha"
+        case Units.TAN:
+            return f"{words.number(square_metres / TAN, 2)} {words('tan')}"
+        case _:
+            assert_never(units)

@@ -7,6 +7,7 @@ from guidance_app.console.registering.atelier import Atelier
 from guidance_app.console.registering.by_tapping import draft_ring
 from guidance_app.console.widgets import Shown, buttons, notice_html, rows_html
 from guidance_app.guidance.boundary_drive import BoundaryDrive, DrivenEdge, QualityGate
+from guidance_app.language import message
 from guidance_app.model import Snapshot
 from guidance_app.view.units import area_text, distance_text
 
@@ -15,7 +16,21 @@ __all__ = ["Driving"]
 DRIVEN, CLOSING = "driven", "closing"
 UNDO = 10.0
 """Metres that one press takes back."""
-REFUSED = {"fix quality": "fix too poor", "direction unknown": "direction unknown", "jump": "jump of the receiver"}
+REFUSED = {
+    "fix quality": message("fix too poor"),
+    "direction unknown": message("direction unknown"),
+    "jump": message("jump of the receiver"),
+}
+EDGES = {
+    DrivenEdge.TRACK: message("tractor"),
+    DrivenEdge.LEFT: message("left edge of the implement"),
+    DrivenEdge.RIGHT: message("right edge of the implement"),
+}
+GATES = {
+    QualityGate.ANY: message("any fix"),
+    QualityGate.DGPS: message("DGPS or better"),
+    QualityGate.RTK: message("RTK only"),
+}
 
 
 class Driving:
@@ -30,8 +45,8 @@ class Driving:
         self._drawn = -1
         gui = atelier.gui
         self._notice = Shown(gui)
-        self._edge = gui.add_dropdown(words("Boundary is at"), tuple(words(edge) for edge in DrivenEdge))
-        self._gate = gui.add_dropdown(words("Take"), tuple(words(gate) for gate in QualityGate))
+        self._edge = gui.add_dropdown(words("Boundary is at"), tuple(words(name) for name in EDGES.values()))
+        self._gate = gui.add_dropdown(words("Take"), tuple(words(name) for name in GATES.values()))
         self._start = gui.add_button(words("Start here"), color="green")
         self._rows = Shown(gui)
         self._pause = gui.add_button(words("Pause"), color="gray", visible=False)
@@ -53,8 +68,8 @@ class Driving:
         self._stop_hearing = self._hands.house.manager.subscribe(self._hear)
 
     def _begin(self) -> None:
-        edge = list(DrivenEdge)[self._edge.options.index(self._edge.value)]
-        gate = list(QualityGate)[self._gate.options.index(self._gate.value)]
+        edge = list(EDGES)[self._edge.options.index(self._edge.value)]
+        gate = list(GATES)[self._gate.options.index(self._gate.value)]
         width = self._hands.house.manager.job.implement.working_width
         with self._lock:
             self._drive = BoundaryDrive(edge, gate, width)
@@ -116,11 +131,14 @@ class Driving:
             self._hands.sketch.line(DRIVEN, points)
             self._hands.sketch.line(CLOSING, points[[-1, 0]] if len(points) > 2 else ())
         rows = [
-            (self._words("driven"), distance_text(length, desk.units)),
-            (self._words("inside"), area_text(area, desk.units)),
-            (self._words("to the start"), distance_text(gap, desk.units)),
+            (self._words("driven"), distance_text(length, desk.units, self._words)),
+            (self._words("inside"), area_text(area, desk.units, self._words)),
+            (self._words("to the start"), distance_text(gap, desk.units, self._words)),
         ]
-        rows += [(self._words("left out: {why}", why=self._words(REFUSED[why])), str(count)) for why, count in refused.items()]
+        rows += [
+            (self._words("left out: {why}", why=self._words(REFUSED[why])), str(count))
+            for why, count in refused.items()
+        ]
         self._rows.show(rows_html(rows))
         self._pause.label = self._words("Go on") if paused else self._words("Pause")
         self._done.visible = len(points) > 2

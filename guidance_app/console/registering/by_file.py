@@ -2,8 +2,9 @@
 
 from guidance_app.console.files import upload_html
 from guidance_app.console.registering.atelier import Atelier
+from guidance_app.console.registering.outside import fields_in
 from guidance_app.console.widgets import buttons, notice_html
-from guidance_app.exchange import READERS, checked_content
+from guidance_app.exchange import READERS
 
 __all__ = ["FromFile"]
 
@@ -25,7 +26,7 @@ class FromFile:
 
     def _take(self, name: str, content: bytes) -> None:
         def read() -> None:
-            self._atelier.offer(checked_content(content, name), name)
+            self._atelier.offer(fields_in(content, name), name)
 
         self._hands.later(read)
 

@@ -49,7 +49,9 @@ class Tapping:
         pose = self._hands.desk().snapshot.pose
         if pose is None:
             self._hands.tell(
-                self._words("No position"), self._words("The receiver gives no position: start one under Start."), bad=True
+                self._words("No position"),
+                self._words("The receiver gives no position: start one under Start."),
+                bad=True,
             )
             return
         if self._frame is None:
@@ -88,7 +90,11 @@ class Tapping:
         here = self._hands.desk().snapshot.pose is not None
         self._here.visible = here
         area = _area(self._points)
-        told = self._words("{count} corners, {area}", count=len(self._points), area=area_text(area, self._hands.desk().units))
+        told = self._words(
+            "{count} corners, {area}",
+            count=len(self._points),
+            area=area_text(area, self._hands.desk().units, self._words),
+        )
         self._count.show(notice_html([told]))
         self._done.disabled = len(self._points) < FEWEST
 

@@ -6,6 +6,8 @@ Each change is one tap or two, is stored at once and can be taken back; nothing 
 import datetime
 from collections.abc import Callable
 
+import shapely
+
 from guidance_app.boundary import BoundaryError, frame_of
 from guidance_app.console.registering.atelier import Atelier, area_words
 from guidance_app.console.widgets import Shown, buttons, notice_html, rows_html
@@ -24,20 +26,28 @@ from guidance_app.field_editing import (
     without_exclusion,
 )
 from guidance_app.geodesy import FieldFrame
+from guidance_app.language import message
+from guidance_app.model import FloatArray
 from guidance_app.store import Store, StoreError
 
 __all__ = ["Editing"]
 
 CORNERS, CHOSEN, LINE = "corners", "chosen", "line"
 GREEN = (47, 158, 68)
-MODES = ("Move a corner", "Add a corner", "Remove a corner", "Add an exclusion", "Cut in two")
+MODES = (
+    message("Move a corner"),
+    message("Add a corner"),
+    message("Remove a corner"),
+    message("Add an exclusion"),
+    message("Cut in two"),
+)
 MOVE, ADD, REMOVE, EXCLUDE, CUT = MODES
 HELP = {
-    MOVE: "Tap a corner, then where it belongs.",
-    ADD: "Tap where the new corner belongs; it goes into the nearest edge.",
-    REMOVE: "Tap the corner that goes.",
-    EXCLUDE: "Tap around the obstacle, then press Finish.",
-    CUT: "Tap two or more points along the cut, then press Finish.",
+    MOVE: message("Tap a corner, then where it belongs."),
+    ADD: message("Tap where the new corner belongs; it goes into the nearest edge."),
+    REMOVE: message("Tap the corner that goes."),
+    EXCLUDE: message("Tap around the obstacle, then press Finish."),
+    CUT: message("Tap two or more points along the cut, then press Finish."),
 }
 
 
@@ -120,7 +130,7 @@ class Editing:
         sketch.line(LINE, self._taps, GREEN)
         area = float(_polygon_area(rings))
         rows = [
-            (self._words("area"), area_words(area, desk.units)),
+            (self._words("area"), area_words(area, desk.units, self._words)),
             (self._words("corners"), str(sum(len(ring) for ring in rings))),
             (self._words("shifts"), str(len(self._document.shifts))),
         ]
@@ -134,14 +144,18 @@ class Editing:
             case "Move a corner" if self._chosen is None:
                 self._chosen = nearest_corner(self._frame(), self._document, point)[0]
             case "Move a corner":
-                corner, self._chosen = self._chosen, None
-                self._hands.later(lambda: self._store(moved_corner(self._frame(), self._document, corner, point)))
+                self._hands.later(lambda: self._move_chosen(point))
             case "Add a corner":
                 self._hands.later(lambda: self._store(with_corner(self._frame(), self._document, point)))
             case "Remove a corner":
                 self._hands.later(lambda: self._remove_near(point))
             case _:
                 self._taps.append(point)
+
+    def _move_chosen(self, to: tuple[float, float]) -> None:
+        corner, self._chosen = self._chosen, None
+        if corner is not None:
+            self._store(moved_corner(self._frame(), self._document, corner, to))
 
     def _remove_near(self, point: tuple[float, float]) -> None:
         frame = self._frame()
@@ -224,7 +238,5 @@ class Editing:
         self._hands.sketch.clear()
 
 
-def _polygon_area(rings: list) -> float:  # type: ignore[type-arg]  # arrays of shape (N, 2)
-    import shapely
-
+def _polygon_area(rings: list[FloatArray]) -> float:
     return float(shapely.Polygon(rings[0], rings[1:]).area)

@@ -1,6 +1,7 @@
 """The preview that every way to a field ends in: the field on the map, its size, what was repaired, take it or not."""
 
 from collections.abc import Callable
+from typing import Any
 
 from guidance_app.boundary import CheckedField
 from guidance_app.console.registering.atelier import Atelier, area_words
@@ -38,7 +39,7 @@ class Preview:
             async def _(_: object) -> None:
                 self._choose()
 
-        self._name = gui.add_text(words("Name"), fields[0].document.name)
+        self._name: Any = gui.add_text(words("Name"), fields[0].document.name)
         self._rows = Shown(gui)
         self._remarks = Shown(gui)
         take = gui.add_button(words("Store this field"), color="green")
@@ -78,8 +79,8 @@ class Preview:
         words = self._words
         rings = field.document.boundary.coordinates
         rows = [
-            (words("area"), area_words(field.area, units)),
-            (words("around"), distance_text(field.perimeter, units)),
+            (words("area"), area_words(field.area, units, words)),
+            (words("around"), distance_text(field.perimeter, units, words)),
             (words("corners"), str(len(rings[0]) - 1)),
             (words("from"), self._origin),
         ]
