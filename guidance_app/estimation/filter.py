@@ -15,9 +15,18 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Literal, Protocol
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from guidance_app.documents import Document, quantity
+from guidance_app.estimation.motion_models import (
+    DOPPLER,
+    DOPPLER_GYRO,
+    GYRO,
+    POSITION,
+    ModelSet,
+    MotionModel,
+    SettingsPart,
+)
 from guidance_app.model import Measurement, Pose
 
 __all__ = [
@@ -73,13 +82,7 @@ Variance = Annotated[float, Field(gt=0, le=1e9, allow_inf_nan=False)]
 Variances = tuple[Variance, Variance, Variance, Variance]
 
 
-class _Part(BaseModel):
-    """A part of the settings: frozen, and a misspelt member is refused."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True)
-
-
-class QuantisationSettings(_Part):
+class QuantisationSettings(SettingsPart):
     """The filter of Gomez-Gil et al. (2013): diagonals in the order east, north, heading, speed.
 
     The defaults are eq. 14. Only the ratios of process to measurement noise matter; the paper gives no units.
@@ -90,7 +93,7 @@ class QuantisationSettings(_Part):
     start_covariance: Variances = Field((3.7, 6.4, 3.7, 6.7), title="Covariance at the start")
 
 
-class GyroSettings(_Part):
+class GyroSettings(SettingsPart):
     """The filter of Inoue et al.: random walks of the state's four parts and the fix's scatter.
 
     The walks are variances per second; the paper gives no numbers, these were tuned on other seeds than the reported.
@@ -110,73 +113,13 @@ class GyroSettings(_Part):
     )
 
 
-Probability = Annotated[float, Field(gt=0, lt=1, allow_inf_nan=False)]
-
-
-class MotionModel(_Part):
-    """How a tractor may move: white acceleration, and a curvature that is forgotten exponentially."""
-
-    acceleration: float = quantity("Acceleration noise", "m/s per square root of s", 1e-5, 5, 0.15, step=0.001)
-    curvature: float = quantity("Curvature", "1/m", 1e-6, 2, 0.1, step=0.001)
-    memory: float = quantity("Memory of the curvature", "s", 0.02, 600, 3.0, step=0.1)
-
-
-Rate = Annotated[float, Field(gt=0, le=50, allow_inf_nan=False, json_schema_extra={"unit": "1/s"})]
-
-
-class ModelSet(_Part):
-    """Three ways of driving and how often the driver changes between them, as rates per second."""
-
-    straight: MotionModel
-    gentle: MotionModel
-    turn: MotionModel
-    straight_to_gentle: Rate
-    gentle_to_straight: Rate
-    any_to_turn: Rate
-    turn_to_gentle: Rate
-
-
-@dataclass(frozen=True, slots=True)
-class _Tuned:
-    """A row of tuned numbers, in the order of ``ModelSet``."""
-
-    numbers: tuple[float, ...]
-
-    def models(self) -> ModelSet:
-        """As settings."""
-        n = self.numbers
-        return ModelSet(
-            straight=MotionModel(acceleration=n[0], curvature=n[1], memory=n[6]),
-            gentle=MotionModel(acceleration=n[2], curvature=n[3], memory=n[7]),
-            turn=MotionModel(acceleration=n[4], curvature=n[5], memory=n[7]),
-            straight_to_gentle=n[8],
-            gentle_to_straight=n[9],
-            any_to_turn=n[10],
-            turn_to_gentle=n[11],
-        )
-
-
-POSITION = _Tuned(
-    (0.001, 0.003303, 0.01554, 0.0004919, 0.2523, 0.1344, 486, 0.4108, 0.01858, 0.004089, 0.002177, 0.116)
-)
-"""Position alone, tuned over eight scenarios at once: a tuning on straight lines is 1.3 to 2.2 m off on arcs."""
-DOPPLER = _Tuned((0.0110, 0.00176, 0.00391, 0.0150, 0.178, 0.1006, 54.6, 1.126, 0.0090, 0.327, 0.0073, 0.0126))
-"""Position with the receiver's course and speed."""
-GYRO = _Tuned((0.01008, 0.02836, 0.01341, 0.0001, 0.3079, 0.006453, 35.4, 4.757, 0.0162, 0.1013, 0.004891, 0.03288))
-"""Position with a gyro."""
-DOPPLER_GYRO = _Tuned(
-    (0.01029, 0.00955, 0.01024, 0.1063, 0.1575, 0.002309, 19.14, 485.3, 0.003231, 0.2624, 0.01331, 0.02118)
-)
-"""Position with course, speed and gyro."""
-
-
-class AdaptiveSettings(_Part):
+class AdaptiveSettings(SettingsPart):
     """The adaptive filter: one set of models per kind of input, and how much each sensor is believed."""
 
-    position: ModelSet = POSITION.models()
-    doppler: ModelSet = DOPPLER.models()
-    gyro: ModelSet = GYRO.models()
-    doppler_gyro: ModelSet = DOPPLER_GYRO.models()
+    position: ModelSet = POSITION
+    doppler: ModelSet = DOPPLER
+    gyro: ModelSet = GYRO
+    doppler_gyro: ModelSet = DOPPLER_GYRO
     velocity_noise: float = quantity("Noise of the receiver's velocity", "m/s", 0.005, 2, 0.05)
     gyro_noise: float = quantity("Noise of the gyro", "rad/s", 1e-5, 0.5, 0.003, step=0.0001)
     gyro_walk: float = quantity("Walk of the gyro's bias", "rad/s per square root of s", 0, 0.01, 2e-5, step=1e-6)
@@ -185,7 +128,7 @@ class AdaptiveSettings(_Part):
     gate: float = quantity("Outlier gate", "chi-square of 2", 6, 40, 15, step=0.1)
 
 
-class SmootherSettings(_Part):
+class SmootherSettings(SettingsPart):
     """The offline smoother's calm motion model, for positions alone and with anything beside them.
 
     The drive's own liveliness is added to it. Stiffer models are better still on straight lines, but their ellipse no

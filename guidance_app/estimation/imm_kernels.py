@@ -1,8 +1,8 @@
 """One epoch of the interacting multiple models (Blom and Bar-Shalom, 1988), compiled by numba.
 
-Three motion models run side by side on the same state; each epoch they are mixed by how likely the driver changed from
+Four motion models run side by side on the same state; each epoch they are mixed by how likely the driver changed from
 one to another, predicted, corrected, and weighed by how well they foresaw the measurement. A single model always
-trades smoothness for lag; three escape the trade.
+trades smoothness for lag; four escape the trade.
 """
 
 import math
@@ -37,11 +37,11 @@ from guidance_app.estimation.observation_kernels import (
 )
 from guidance_app.model import FloatArray
 
-MODELS = 3
+MODELS = 4
 
 TEMPER = 1 / 3
 """The weights' power in the covariance that is shown. Successive roundings err alike, so the weights are surer of a
-model than they may be: untempered, the 95 % ellipse held 84 % on a fishtail and a spiral; so it holds 92 to 100 %."""
+model than they may be: untempered, the 95 % ellipse held 85 % on a spiral; so it holds 91 to 100 % on every path."""
 
 SHARPEST = 1.0
 """What a driver may do between two fixes, in m/s2, beyond what the models foresee: no fix is an outlier for that."""
@@ -146,7 +146,7 @@ def _reopen(p: FloatArray, n: int, innovation: FloatArray) -> None:
 def imm_step(belief: Belief, n: int, dt: float, z: FloatArray, how: int, motion: Motion) -> tuple[Belief, FloatArray]:
     """One epoch. Gives the new belief and a report.
 
-    ``belief`` is means (3, 9), covariances (3, 9, 9), weights (3,). ``motion`` is a row per motion model, the
+    ``belief`` is means (4, 9), covariances (4, 9, 9), weights (4,). ``motion`` is a row per motion model, the
     probabilities of changing between them in this ``dt``, and the process noise that all share. The report: 1 if the
     position was taken else 0; the fix's distance (chi-square, against the last model, which is the most mobile); the
     innovation's east and north.
@@ -187,7 +187,7 @@ def imm_step(belief: Belief, n: int, dt: float, z: FloatArray, how: int, motion:
 
 @numba.njit(cache=True)
 def combined(belief: Belief, n: int) -> tuple[FloatArray, FloatArray]:
-    """Mean (9,) and covariance (9, 9) of the three models together; the covariance with tempered weights."""
+    """Mean (9,) and covariance (9, 9) of the four models together; the covariance with tempered weights."""
     x, p, w = belief
     mean = np.zeros(STATES)
     covariance = np.zeros((STATES, STATES))

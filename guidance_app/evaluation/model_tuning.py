@@ -15,7 +15,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from guidance_app.estimation.filter import AdaptiveSettings, FilterSettings, ModelSet, MotionModel
+from guidance_app.estimation.filter import AdaptiveSettings, FilterSettings
+from guidance_app.estimation.motion_models import ModelSet
 from guidance_app.evaluation.estimating import estimate_recording
 from guidance_app.evaluation.gomez_gil import eighteen_lines, rounding_only
 from guidance_app.evaluation.metrics import Score, errors_of, pool, summarise
@@ -35,9 +36,9 @@ KINDS = {
 }
 """The model sets by what they are for, named as in ``AdaptiveSettings``."""
 
-LOWEST = np.array([0.01, 1e-4, 0.01, 1e-4, 0.01, 1e-3, 0.3, 0.3, 1e-4, 1e-4, 1e-4, 1e-4])
-HIGHEST = np.array([4.0, 1.5, 4.0, 1.5, 4.0, 1.5, 500.0, 500.0, 40.0, 40.0, 40.0, 40.0])
-"""Bounds of the twelve numbers: three times acceleration and curvature, two memories, four rates of change."""
+LOWEST = np.array([*np.tile((1e-4, 1e-5, 0.1), 4), *np.full(6, 1e-3)])
+HIGHEST = np.array([*np.tile((4.0, 1.5, 500.0), 4), *np.full(6, 40.0)])
+"""Bounds of the eighteen numbers: acceleration, curvature and memory of four models, six rates of change."""
 
 HONEST = 0.915
 SLOW_RATE_HZ = 1.0
@@ -70,25 +71,13 @@ class ModelObjective:
 
 
 def numbers_of(models: ModelSet) -> FloatArray:
-    """The twelve numbers of a model set, in the order of the bounds."""
-    three = (models.straight, models.gentle, models.turn)
-    motion = [value for model in three for value in (model.acceleration, model.curvature)]
-    rates = (models.straight_to_gentle, models.gentle_to_straight, models.any_to_turn, models.turn_to_gentle)
-    return np.array([*motion, models.straight.memory, models.turn.memory, *rates])
+    """The eighteen numbers of a model set, in the order of the bounds."""
+    return np.array(models.numbers)
 
 
 def model_settings(kind: str, numbers: FloatArray, base: FilterSettings | None = None) -> FilterSettings:
-    """The settings document with these twelve numbers as the model set ``kind``; all else as in ``base``."""
-    n = [float(f"{value:.4g}") for value in numbers]
-    models = ModelSet(
-        straight=MotionModel(acceleration=n[0], curvature=n[1], memory=n[6]),
-        gentle=MotionModel(acceleration=n[2], curvature=n[3], memory=n[7]),
-        turn=MotionModel(acceleration=n[4], curvature=n[5], memory=n[7]),
-        straight_to_gentle=n[8],
-        gentle_to_straight=n[9],
-        any_to_turn=n[10],
-        turn_to_gentle=n[11],
-    )
+    """The settings document with these eighteen numbers as the model set ``kind``; all else as in ``base``."""
+    models = ModelSet.of([float(f"{value:.4g}") for value in numbers])
     settings = base or FilterSettings()
     adaptive: AdaptiveSettings = settings.adaptive.model_copy(update={kind: models})
     return settings.model_copy(update={"adaptive": adaptive})

@@ -259,10 +259,10 @@ def test_a_compass_wraps_and_a_speed_alone_is_taken_once():
 def some_belief(random: np.random.Generator) -> tuple[FloatArray, FloatArray, FloatArray]:
     x = np.tile(some_state(random), (MODELS, 1)) + random.normal(0, 0.01, (MODELS, STATES))
     p = np.array([some_covariance(random) * 0.01 for _ in range(MODELS)])
-    return x, p, np.array([0.5, 0.3, 0.2])
+    return x, p, np.array([0.5, 0.3, 0.15, 0.05])
 
 
-MOTION = (np.tile(MODEL, (MODELS, 1)), np.full((MODELS, MODELS), 1 / 3), COMMON)
+MOTION = (np.tile(MODEL, (MODELS, 1)), np.full((MODELS, MODELS), 1 / MODELS), COMMON)
 
 
 def test_a_step_leaves_its_input_alone_and_its_weights_sum_to_one():
@@ -288,10 +288,10 @@ def test_without_a_position_the_uncertainty_of_the_position_grows():
 
 def test_the_combined_covariance_holds_the_models_disagreement():
     x = np.zeros((MODELS, STATES))
-    x[:, EAST] = -1.0, 0.0, 1.0
-    mean, covariance = combined((x, np.zeros((MODELS, STATES, STATES)), np.full(MODELS, 1 / 3)), STATES)
+    x[:, EAST] = -1.0, 0.0, 0.0, 1.0
+    mean, covariance = combined((x, np.zeros((MODELS, STATES, STATES)), np.full(MODELS, 1 / MODELS)), STATES)
     assert mean[EAST] == pytest.approx(0)
-    assert covariance[EAST, EAST] == pytest.approx(2 / 3)
+    assert covariance[EAST, EAST] == pytest.approx(1 / 2)
 
 
 # --- the smoother --------------------------------------------------------------------------------------------------

@@ -33,7 +33,7 @@ def test_the_present_models_beat_sloppy_ones(kind: str) -> None:
     objective = ModelObjective(kind, seeds=1)
     present = objective.value(FilterSettings())
     sloppy = numbers_of(getattr(FilterSettings().adaptive, kind)).copy()
-    sloppy[:6] = (1.0, 0.5, 1.0, 0.5, 1.0, 0.5)
+    sloppy[:12] = (1.0, 0.5, 5.0) * 4
     assert math.isfinite(present)
     assert present < objective.value(model_settings(kind, sloppy)) - 0.1
 

@@ -1,8 +1,8 @@
-"""The default filter: three motion models side by side, and every sensor that the epoch holds.
+"""The default filter: four motion models side by side, and every sensor that the epoch holds.
 
-State: see ``kernels``. Its curvature is what lets it follow a turn without lag, and three models (straight, gentle
-correction, headland turn), mixed by how well each foresees the fixes (``imm_kernels``), are what lets it be smooth on
-a line as well: one model alone trades the two, 4.4 cm against 3.0 in the mean over eight scenarios.
+State: see ``kernels``. Its curvature is what lets it follow a turn without lag, and four models of driving
+(``motion_models``), mixed by how well each foresees the fixes (``imm_kernels``), are what lets it be smooth on a line
+as well: one model alone trades the two, 4.4 cm against 2.7 in the mean over eight scenarios.
 
 * **Position** lies somewhere in its cell, whose size travels with the fix: a truncated normal, not a Gaussian with
   Sheppard's variance, worth 13 % here and most of all on lines along an axis.
@@ -23,12 +23,11 @@ kept if the tractor stood and still stands there.
 
 import math
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 
 from guidance_app.angles import wrap_2pi
-from guidance_app.estimation.filter import AdaptiveSettings, Filter, FilterSettings, ModelSet, Start
+from guidance_app.estimation.filter import AdaptiveSettings, Filter, FilterSettings, Start
 from guidance_app.estimation.imm_kernels import (
     MODELS,
     REOPENED,
@@ -51,6 +50,8 @@ from guidance_app.estimation.kernels import (
     SPEED,
     STATES,
 )
+from guidance_app.estimation.motion import MotionTables
+from guidance_app.estimation.motion_models import ModelSet
 from guidance_app.estimation.readings import common_noise, readings, slip_of
 from guidance_app.estimation.receiver_noise import DEFAULT_CELL, ReceiverNoise, fix_covariance, noise_of
 from guidance_app.estimation.reference_point import offset_point
@@ -73,7 +74,7 @@ GYRO_BIAS_SD = 0.01
 class _State:
     """All that is remembered; replaced in each step, its arrays never written to.
 
-    ``belief`` is each model's mean (3, 9), covariance (3, 9, 9) and weight (3,); ``n`` how many states are live.
+    ``belief`` is each model's mean (4, 9), covariance (4, 9, 9) and weight (4,); ``n`` how many states are live.
     """
 
     t: float
@@ -101,10 +102,11 @@ class _Before:
 
 
 class Adaptive:
-    """Three-model filter over position, heading, speed, curvature and the sensors' slow errors."""
+    """Four-model filter over position, heading, speed, curvature and the sensors' slow errors."""
 
-    def __init__(self, settings: FilterSettings) -> None:
+    def __init__(self, settings: FilterSettings, tables: MotionTables | None = None) -> None:
         self._settings = settings
+        self._tables = tables or MotionTables(settings.adaptive)
         self._memory: _State | _Before | None = None
         self._start: Start | None = None
 
@@ -117,7 +119,7 @@ class Adaptive:
         if isinstance(memory, _State) and z.t - memory.t > LONGEST_GAP:
             memory = _after_gap(memory, z)
         if isinstance(memory, _State):
-            memory = _advanced(memory, z, noise, self._settings.adaptive)
+            memory = _advanced(memory, z, noise, self._settings.adaptive, self._tables)
             if is_lost(memory.rejected):
                 memory = _lost(memory)
         if isinstance(memory, _State):
@@ -132,7 +134,7 @@ class Adaptive:
 
     def fork(self) -> Filter:
         """An independent copy: the state is frozen, so it is shared."""
-        other = Adaptive(self._settings)
+        other = Adaptive(self._settings, self._tables)
         other._memory, other._start = self._memory, self._start
         return other
 
@@ -155,7 +157,7 @@ class Adaptive:
             return _Before(waiting, _unknown(z), bias, bias_sd, still, before.pointed if before else None)
         if before is not None and before.pointed is not None and z.heading is None:
             departure = departure.as_before(before.pointed)
-        return _started(z, departure, noise, self._settings.adaptive, (bias, bias_sd), still)
+        return _started(z, departure, noise, self._tables.models(z), (bias, bias_sd), still)
 
 
 def _unknown(z: Measurement) -> Pose:
@@ -179,11 +181,10 @@ def _started(
     z: Measurement,
     departure: Departure,
     noise: ReceiverNoise,
-    settings: AdaptiveSettings,
+    models: ModelSet,
     gyro: tuple[float, float],
     still: Stillness,
 ) -> _State:
-    models = _models(settings, z)
     forward, right, _ = z.antenna
     east, north = offset_point(z.east, z.north, departure.heading, -forward, -right)
     x = np.zeros((MODELS, STATES))
@@ -196,7 +197,7 @@ def _started(
         p[:, axis, axis] = cell[axis] ** 2 / 12 + noise.white**2
     p[:, HEADING, HEADING] = departure.heading_sd**2
     p[:, SPEED, SPEED] = departure.speed_sd**2
-    for j, model in enumerate((models.straight, models.gentle, models.turn)):
+    for j, model in enumerate(models.models):
         p[j, CURVATURE, CURVATURE] = min(model.curvature, 0.1) ** 2
     p[:, GYRO_BIAS, GYRO_BIAS] = gyro[1] ** 2
     p[:, SLIP, SLIP] = slip_of(z)[0] ** 2
@@ -208,7 +209,7 @@ def _started(
             p[:, drift, axis] = p[:, axis, drift] = -(noise.drift**2)
     w = np.full(MODELS, 1.0 / MODELS)
     belief = (x, p, w)
-    return _State(z.t, belief, n, still, _pose(z, belief, n))
+    return _State(z.t, belief, n, still, _pose(z, belief, n, None, blind=False))
 
 
 def _after_gap(state: _State, z: Measurement) -> "_State | _Before":
@@ -238,15 +239,16 @@ def _lost(state: _State) -> _Before:
     return _Before(waiting, state.pose, bias, bias_sd, state.still, pointed)
 
 
-def _advanced(state: _State, z: Measurement, noise: ReceiverNoise, settings: AdaptiveSettings) -> _State:
+def _advanced(
+    state: _State, z: Measurement, noise: ReceiverNoise, settings: AdaptiveSettings, tables: MotionTables
+) -> _State:
     """One epoch of a running filter."""
     state = _with_drift(state, z, noise)
     dt = z.t - state.t
     still = state.still.after(z, noise.white)
     bound = still.speed_bound(z, noise.white)
-    models = _models(settings, z)
     epoch = readings(z, noise, settings, bound)
-    motion = (_model_rows(models), _moves(models, round(dt, 4)), common_noise(z, noise, settings))
+    motion = (tables.rows(z), tables.moves(z, dt), common_noise(z, noise, settings))
     nothing_new = bound is not None and still.repeats(z)
     if nothing_new:
         belief, _ = imm_step(state.belief, state.n, dt, epoch, WITHOUT_POSITION, motion)
@@ -254,9 +256,7 @@ def _advanced(state: _State, z: Measurement, noise: ReceiverNoise, settings: Ada
     else:
         belief, rejected = _corrected(state, z, dt, epoch, motion)
     belief, backed = _turned_round(belief, z, state.backed, dt)
-    pose = _pose(z, belief, state.n)
-    standing = bound is not None and abs(pose.speed) < STANDING_SPEED
-    pose = replace(pose, standing=standing, dead_reckoned=bool(rejected))
+    pose = _pose(z, belief, state.n, bound, blind=bool(rejected))
     return _State(z.t, belief, state.n, still, pose, rejected, backed)
 
 
@@ -333,32 +333,8 @@ def _turned_round(belief: Belief, z: Measurement, backed: float, dt: float) -> t
     return (x, p, w), 0.0
 
 
-def _models(settings: AdaptiveSettings, z: Measurement) -> ModelSet:
-    """The set tuned for what this epoch holds."""
-    if z.yaw_rate is None:
-        return settings.position if z.speed is None else settings.doppler
-    return settings.gyro if z.speed is None else settings.doppler_gyro
-
-
-@lru_cache(maxsize=64)
-def _model_rows(models: ModelSet) -> FloatArray:
-    """Shape (3, 3): a row per motion model."""
-    return np.array([(m.acceleration, m.curvature, m.memory) for m in (models.straight, models.gentle, models.turn)])
-
-
-@lru_cache(maxsize=1024)
-def _moves(models: ModelSet, dt: float) -> FloatArray:
-    """Shape (3, 3): probability of changing from one model (row) to another (column) within ``dt``."""
-    a, b, c, d = (
-        -math.expm1(-rate * dt)
-        for rate in (models.straight_to_gentle, models.gentle_to_straight, models.any_to_turn, models.turn_to_gentle)
-    )
-    moves = np.array([[1 - a - c / 2, a, c / 2], [b, 1 - b - c, c], [0.3 * d, 0.7 * d, 1 - d]])
-    moves = np.clip(moves, 1e-7, 1.0)
-    return np.asarray(moves / moves.sum(axis=1, keepdims=True))
-
-
-def _pose(z: Measurement, belief: Belief, n: int) -> Pose:
+def _pose(z: Measurement, belief: Belief, n: int, bound: float | None, *, blind: bool) -> Pose:
+    """The four models' mean; ``bound`` is a standing tractor's, ``blind`` says that the fix was refused."""
     mean, covariance = combined(belief, n)
     speed = float(mean[SPEED])
     sigma = math.sqrt(covariance[HEADING, HEADING])
@@ -373,6 +349,8 @@ def _pose(z: Measurement, belief: Belief, n: int) -> Pose:
         covariance=(float(covariance[EAST, EAST]), float(covariance[EAST, NORTH]), float(covariance[NORTH, NORTH])),
         heading_sigma=sigma,
         heading_known=sigma < HEADING_LOST,
+        standing=bound is not None and abs(speed) < STANDING_SPEED,
+        dead_reckoned=blind,
         reverse=speed < -STANDING_SPEED,
         roll=z.roll,
         pitch=z.pitch,
