@@ -12,27 +12,21 @@ import numpy as np
 
 from guidance_app.estimation.kernels import (
     DRIFT_EAST,
-    EAST,
     HEADING,
-    NORTH,
     STATES,
     gaussian_update,
     interval_update,
     predict,
     robust_update,
 )
+from guidance_app.estimation.manoeuvre_kernels import UNFORESEEN, begin_again, distances
 from guidance_app.estimation.observation_kernels import (
     CELL_EAST,
-    CELL_NORTH,
     GATE,
     GYRO,
     MEASUREMENTS,
     STANDING,
     VELOCITY_ALONG,
-    WHITE,
-    Z_EAST,
-    Z_NORTH,
-    antenna,
     observe,
 )
 from guidance_app.model import FloatArray
@@ -43,14 +37,12 @@ TEMPER = 1 / 3
 """The weights' power in the covariance that is shown. Successive roundings err alike, so the weights are surer of a
 model than they may be: untempered, the 95 % ellipse held 85 % on a spiral; so it holds 91 to 100 % on every path."""
 
-SHARPEST = 1.0
-"""What a driver may do between two fixes, in m/s2, beyond what the models foresee: no fix is an outlier for that."""
-
 WITH_POSITION, WITHOUT_POSITION, REOPENED = range(3)
 """How the position is taken: through the gate, not at all, or believed whatever the distance."""
 
 Belief = tuple[FloatArray, FloatArray, FloatArray]
-Motion = tuple[FloatArray, FloatArray, FloatArray]
+Motion = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+"""A row per motion model, the probabilities of changing between them, the noise they share, the last believed pose."""
 
 
 @numba.njit(cache=True)
@@ -112,26 +104,6 @@ def _position(x: FloatArray, p: FloatArray, n: int, z: FloatArray) -> float:
 
 
 @numba.njit(cache=True)
-def _distance(x: FloatArray, p: FloatArray, n: int, dt: float, z: FloatArray, innovation: FloatArray) -> float:
-    """Chi-square distance of the fix from a predicted state; ``innovation`` becomes (east, north)."""
-    reach = 0.5 * SHARPEST * dt * dt
-    he = np.zeros(n)
-    hn = np.zeros(n)
-    innovation[0] = z[Z_EAST] - antenna(x, z, EAST, he)
-    innovation[1] = z[Z_NORTH] - antenna(x, z, NORTH, hn)
-    ee = z[CELL_EAST] ** 2 / 12.0 + z[WHITE] ** 2 + reach**2
-    nn = z[CELL_NORTH] ** 2 / 12.0 + z[WHITE] ** 2 + reach**2
-    en = 0.0
-    for i in range(n):
-        for j in range(n):
-            ee += he[i] * p[i, j] * he[j]
-            nn += hn[i] * p[i, j] * hn[j]
-            en += he[i] * p[i, j] * hn[j]
-    a, b = innovation[0], innovation[1]
-    return float((nn * a * a - 2.0 * en * a * b + ee * b * b) / (ee * nn - en * en))
-
-
-@numba.njit(cache=True)
 def _reopen(p: FloatArray, n: int, innovation: FloatArray) -> None:
     """Doubts the position by as much as the fix is away, in place; with drift half of it is the receiver's."""
     for axis in range(2):
@@ -146,13 +118,12 @@ def _reopen(p: FloatArray, n: int, innovation: FloatArray) -> None:
 def imm_step(belief: Belief, n: int, dt: float, z: FloatArray, how: int, motion: Motion) -> tuple[Belief, FloatArray]:
     """One epoch. Gives the new belief and a report.
 
-    ``belief`` is means (4, 9), covariances (4, 9, 9), weights (4,). ``motion`` is a row per motion model, the
-    probabilities of changing between them in this ``dt``, and the process noise that all share. The report: 1 if the
-    position was taken else 0; the fix's distance (chi-square, against the last model, which is the most mobile); the
-    innovation's east and north.
+    ``belief`` is means (4, 9), covariances (4, 9, 9), weights (4,). The report: 1 if the position was taken else 0; the
+    fix's distance (chi-square) from what is within reach of the last model, which is the most mobile; the innovation's
+    east and north.
     """
     x, p, w = belief
-    models, moves, common = motion
+    models, moves, common, last = motion
     x_new = x.copy()
     w_new = w.copy()
     p_new = _mix(x, p, w_new, moves, x_new, n)
@@ -160,14 +131,17 @@ def imm_step(belief: Belief, n: int, dt: float, z: FloatArray, how: int, motion:
     for j in range(MODELS):
         predict(x_new[j], p_new[j], n, dt, models[j], common)
     innovation = np.zeros(2)
-    distance = _distance(x_new[MODELS - 1], p_new[MODELS - 1], n, dt, z, innovation)
+    jump, distance = distances(x_new[MODELS - 1], p_new[MODELS - 1], n, dt, z, innovation)
     taken = how == REOPENED or (how == WITH_POSITION and distance <= z[GATE])
+    manoeuvre = how == WITH_POSITION and jump > UNFORESEEN
     log_weight = np.empty(MODELS)
     for j in range(MODELS):
         if how == REOPENED:
             _reopen(p_new[j], n, innovation)
         log_weight[j] = math.log(w_new[j])
-        if taken:
+        if taken and manoeuvre and j == MODELS - 1:
+            log_weight[j] += begin_again(x_new[j], p_new[j], n, z, innovation, last)
+        elif taken:
             log_weight[j] += _position(x_new[j], p_new[j], n, z)
         log_weight[j] += _sensors(x_new[j], p_new[j], n, z)
         for a in range(n):

@@ -1,7 +1,8 @@
 """How far a fix of each quality may be off: white scatter, and the slow error that no averaging removes.
 
 The numbers are those of the sources' own scatter: RTK by its data sheets, DGPS by Inoue et al. (steps of 25 cm that
-stay, drift of 16 cm over minutes), autonomous by the daily drift that users see between neighbouring passes.
+stay, drift of 16 cm over minutes), RTK float by a car's drive beside a reference (37 cm an axis for minutes),
+autonomous by the daily drift that users see between neighbouring passes.
 """
 
 import math
@@ -30,7 +31,7 @@ _BY_QUALITY = {
     FixQuality.DGPS: ReceiverNoise(0.03, 0.18, 70.0),
     FixQuality.PPS: ReceiverNoise(0.03, 0.18, 70.0),
     FixQuality.RTK_FIXED: ReceiverNoise(0.008, 0.0, 1.0),
-    FixQuality.RTK_FLOAT: ReceiverNoise(0.03, 0.12, 70.0),
+    FixQuality.RTK_FLOAT: ReceiverNoise(0.03, 0.38, 2000.0),
     FixQuality.DEAD_RECKONING: ReceiverNoise(0.3, 3.0, 60.0),
     FixQuality.MANUAL: ReceiverNoise(0.01, 0.0, 1.0),
     FixQuality.SIMULATED: ReceiverNoise(0.008, 0.0, 1.0),

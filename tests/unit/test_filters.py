@@ -334,6 +334,41 @@ def test_no_finite_measurement_breaks_it(name: str, seed: int):
         assert all(math.isfinite(part) for part in pose.covariance)
 
 
+BRAKING = drive(
+    lambda t: min(max(t - 5, 0.0) * 1.5, 6.0) if t < 30 else max(6.0 - 3.0 * (t - 30), 0.0) + max(t - 45, 0.0),
+    lambda _: 0.0,
+    52,
+    rate=1.0,
+)
+"""Off with 1.5 m/s2, on at 22 km/h, a hard stop within 2 s, ten seconds of standing, off again; a fix a second."""
+
+
+@pytest.mark.parametrize("quality", [FixQuality.RTK_FIXED, FixQuality.DGPS])
+@pytest.mark.parametrize("velocity", [False, True], ids=["position", "velocity"])
+def test_a_hard_stop_at_1_hz_is_not_driven_past(velocity: bool, quality: FixQuality):
+    poses = run("adaptive", measured(BRAKING, Kit(velocity=velocity, quality=quality)))
+    for pose, moment in zip(poses, BRAKING, strict=True):
+        assert position_error(pose, moment) < 0.25
+        assert not pose.dead_reckoned
+        assert pose.covariance is not None
+        sigma = math.sqrt(pose.covariance[0] + pose.covariance[2])
+        assert position_error(pose, moment) < 4 * sigma
+        if moment.t > 15 and pose.heading_known:
+            assert heading_error(pose, moment) < 20 * DEGREE
+
+
+@pytest.mark.parametrize("rate", [1.0, 5.0])
+def test_an_outlier_to_the_side_is_refused_at_any_rate(rate: float):
+    """Ahead at 1 Hz it may be the driver's doing; to the side no tractor gets so far."""
+    truth = straight(duration=60, heading=0.0, rate=rate)
+    z = measured(truth)
+    k = round(40 * rate)
+    z[k] = replace(z[k], east=z[k].east + 2.0)
+    pose = run("adaptive", z)[k]
+    assert pose.dead_reckoned
+    assert position_error(pose, truth[k]) < 0.25
+
+
 @EVERY
 def test_after_a_shower_of_outliers_it_finds_back(name: str):
     truth = straight(duration=60, speed=5 * KMH)

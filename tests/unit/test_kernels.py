@@ -262,7 +262,12 @@ def some_belief(random: np.random.Generator) -> tuple[FloatArray, FloatArray, Fl
     return x, p, np.array([0.5, 0.3, 0.15, 0.05])
 
 
-MOTION = (np.tile(MODEL, (MODELS, 1)), np.full((MODELS, MODELS), 1 / MODELS), COMMON)
+MOTION = (
+    np.tile(MODEL, (MODELS, 1)),
+    np.full((MODELS, MODELS), 1 / MODELS),
+    COMMON,
+    np.array([0.0, 0.0, 0.3, 1.5, 0.2]),
+)
 
 
 def test_a_step_leaves_its_input_alone_and_its_weights_sum_to_one():

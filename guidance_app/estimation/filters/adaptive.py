@@ -10,10 +10,12 @@ as well: one model alone trades the two, 4.4 cm against 2.7 in the mean over eig
   one set of models per kind of input. The lever arm swings all of them.
 * **Drift**: a fix that is not RTK carries two more states, the receiver's slow error. A change of fix quality changes
   what is believed of a fix, never the state.
-* **Gate**: a fix beyond chi-square 15 of the most mobile model is dead-reckoned over, at most five in a row. Four that
-  agree within 15 cm are a step of the receiver's: it goes into the drift, or, with RTK, is followed.
+* **Gate**: a fix beyond chi-square 15 of what is within reach of the most mobile model (``manoeuvre_kernels``) is
+  dead-reckoned over, at most five in a row. Four that agree within 15 cm are a step of the receiver's: it goes into
+  the drift, or, with RTK, is followed. At 1 Hz a metre ahead may be a driver's doing; to the side it is not.
 * **Standing**: speed is held at zero (ZUPT), which holds the heading and lets the gyro's bias be learnt (ZARU). The
-  same fix again tells a standing tractor nothing new; taken as news it would shrink the ellipse below the truth.
+  same fix again tells a standing tractor nothing new, as long as it is believed within that fix's cell; taken as news
+  it would shrink the ellipse below the truth.
 * **Reverse**: the heading stays and the speed goes negative. Thirty metres of it without a heading sensor are taken for
   a start in the wrong direction, and turned round.
 
@@ -52,6 +54,7 @@ from guidance_app.estimation.kernels import (
 )
 from guidance_app.estimation.motion import MotionTables
 from guidance_app.estimation.motion_models import ModelSet
+from guidance_app.estimation.observation_kernels import CELL_EAST, CELL_NORTH
 from guidance_app.estimation.readings import common_noise, readings, slip_of
 from guidance_app.estimation.receiver_noise import DEFAULT_CELL, ReceiverNoise, fix_covariance, noise_of
 from guidance_app.estimation.reference_point import offset_point
@@ -74,7 +77,8 @@ GYRO_BIAS_SD = 0.01
 class _State:
     """All that is remembered; replaced in each step, its arrays never written to.
 
-    ``belief`` is each model's mean (4, 9), covariance (4, 9, 9) and weight (4,); ``n`` how many states are live.
+    ``belief`` is each model's mean (4, 9), covariance (4, 9, 9) and weight (4,); ``n`` how many states are live;
+    ``believed`` the pose at the last fix that was not rejected.
     """
 
     t: float
@@ -82,6 +86,7 @@ class _State:
     n: int
     still: Stillness
     pose: Pose
+    believed: Pose
     rejected: tuple[Refused, ...] = ()
     backed: float = 0.0
 
@@ -209,7 +214,8 @@ def _started(
             p[:, drift, axis] = p[:, axis, drift] = -(noise.drift**2)
     w = np.full(MODELS, 1.0 / MODELS)
     belief = (x, p, w)
-    return _State(z.t, belief, n, still, _pose(z, belief, n, None, blind=False))
+    pose = _pose(z, belief, n, None, blind=False)
+    return _State(z.t, belief, n, still, pose, pose)
 
 
 def _after_gap(state: _State, z: Measurement) -> "_State | _Before":
@@ -248,16 +254,25 @@ def _advanced(
     still = state.still.after(z, noise.white)
     bound = still.speed_bound(z, noise.white)
     epoch = readings(z, noise, settings, bound)
-    motion = (tables.rows(z), tables.moves(z, dt), common_noise(z, noise, settings))
-    nothing_new = bound is not None and still.repeats(z)
-    if nothing_new:
-        belief, _ = imm_step(state.belief, state.n, dt, epoch, WITHOUT_POSITION, motion)
-        rejected = state.rejected
-    else:
-        belief, rejected = _corrected(state, z, dt, epoch, motion)
+    seen = state.believed
+    last = np.array((seen.east, seen.north, seen.heading, seen.speed, z.t - seen.t))
+    motion = (tables.rows(z), tables.moves(z, dt), common_noise(z, noise, settings), last)
+    unchanged = None
+    if bound is not None and still.repeats(z):
+        unchanged = _unchanged(state, dt, epoch, motion)
+    belief, rejected = unchanged or _corrected(state, z, dt, epoch, motion)
     belief, backed = _turned_round(belief, z, state.backed, dt)
     pose = _pose(z, belief, state.n, bound, blind=bool(rejected))
-    return _State(z.t, belief, state.n, still, pose, rejected, backed)
+    return _State(z.t, belief, state.n, still, pose, state.believed if rejected else pose, rejected, backed)
+
+
+def _unchanged(
+    state: _State, dt: float, epoch: FloatArray, motion: Motion
+) -> tuple[Belief, tuple[Refused, ...]] | None:
+    """What a standing tractor knows after the same fix again; None if it is believed outside of that fix's cell."""
+    belief, report = imm_step(state.belief, state.n, dt, epoch, WITHOUT_POSITION, motion)
+    outside = abs(report[2]) > 0.5 * epoch[CELL_EAST] or abs(report[3]) > 0.5 * epoch[CELL_NORTH]
+    return None if outside else (belief, state.rejected)
 
 
 def _corrected(
