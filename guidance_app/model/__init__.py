@@ -43,7 +43,7 @@ from guidance_app.model.commands import (
     TakePass,
     WorkMode,
 )
-from guidance_app.model.known import LinkState, LinkStatus, OffsetRecord, Snapshot
+from guidance_app.model.known import Ghost, LinkState, LinkStatus, OffsetRecord, Snapshot
 from guidance_app.model.lines import Guidance, Pass, Plan, PlanCosts, Segment, SegmentKind, TurnGuide
 from guidance_app.model.motion import Measurement, Pose, Prediction
 from guidance_app.model.session import (
@@ -90,6 +90,7 @@ __all__ = [
     "Fix",
     "FixQuality",
     "FloatArray",
+    "Ghost",
     "Guidance",
     "Initialised",
     "Initialising",

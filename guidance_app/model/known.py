@@ -13,6 +13,7 @@ from guidance_app.model.wire import Attitude, Fix, Satellite
 from guidance_app.model.worked import CoverageTotals, Trail
 
 __all__ = [
+    "Ghost",
     "LinkState",
     "LinkStatus",
     "OffsetRecord",
@@ -64,6 +65,17 @@ class OffsetRecord:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Ghost:
+    """The same drive as another filter, look-ahead or place of the antenna would have it; a replay shows it beside."""
+
+    track: Trail | None = None
+    pose: Pose | None = None
+    guidance: Guidance | None = None
+    prediction: Prediction | None = None
+    filter_name: str = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Snapshot:
     """All that is known now. Replaced whole; reading one needs no lock.
 
@@ -75,7 +87,8 @@ class Snapshot:
     ``sky`` are the satellites in view.
     ``initialising`` is there in that state alone; ``initialised`` is its last result. ``sections`` says which are
     switched on, the leftmost first; ``pass_totals`` is the work on the target pass, where ``left`` is what was driven
-    by and not worked. ``roll_zero`` is a calibration under way; ``roll_zero_deg`` the zero in use.
+    by and not worked. ``roll_zero`` is a calibration under way; ``roll_zero_deg`` the zero in use. ``ghost`` is there
+    in a replay that compares.
     """
 
     sequence: int
@@ -112,3 +125,4 @@ class Snapshot:
     roll_zero: RollZeroProgress | None = None
     roll_zero_deg: float = 0.0
     notices: tuple[str, ...] = ()
+    ghost: Ghost | None = None

@@ -1,5 +1,6 @@
 """Threads, queue and clock around one engine: the live session, recorded, and the replay under a person's hands."""
 
+from guidance_app.runtime.engines import Comparison
 from guidance_app.runtime.live import LiveSession
 from guidance_app.runtime.manager import SessionManager
 from guidance_app.runtime.recorded import recorded_session, resumed_session
@@ -9,6 +10,7 @@ from guidance_app.runtime.session import Session
 from guidance_app.runtime.tap import RawStream, Tap
 
 __all__ = [
+    "Comparison",
     "LiveSession",
     "RawStream",
     "Recorder",

@@ -1,39 +1,47 @@
-"""A session on a log, under a person's hands: play, pause, faster, and to any second of it.
+"""A session on a log or a recorded drive, under a person's hands: play, pause, faster, and to any second of it.
 
-A jump back starts from the nearest checkpoint (an engine's ``fork``, kept every 20 s of the log that was played) and
-takes the chunks from there to the wanted second as fast as the machine can. The driver's commands keep the place at
-which they were given and act again when that place is passed again; only the look-ahead, which is about the screen
-and not about the work, stays as it was set last.
+A jump back starts from the nearest checkpoint (a copy of the engine, kept every 20 s of what was played, and with an
+index every minute of the whole) and takes the events from there to the wanted second as fast as the machine can. The
+driver's commands keep the place at which they were given and act again when that place is passed again; only the
+look-ahead, which is about the screen and not about the work, stays as it was set last, and then goes before the one
+that was set in a recorded drive.
 """
 
-import bisect
-import logging
 import math
 import queue
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 from guidance_app.documents import Job
-from guidance_app.engine import Engine
 from guidance_app.estimation.filter import FilterSettings
-from guidance_app.model import Chunk, Command, Commanded, Event, SetLookAhead, Snapshot, SourceDown, SourceUp
+from guidance_app.model import Command, Commanded, Event, SetLookAhead, Snapshot, SourceDown
+from guidance_app.recording import RecordedDrive
+from guidance_app.runtime.checkpoints import Checkpoint, Checkpoints, PassStart, PassStarts
+from guidance_app.runtime.engines import Comparison, Engines, Setup
+from guidance_app.runtime.indexing import Index, IndexPart
 from guidance_app.runtime.session import Hearer, Publisher
 from guidance_app.runtime.tap import Tap
+from guidance_app.runtime.timeline import timeline_of
 from guidance_app.sources.file import FileLog
 from guidance_app.sources.pacing import Pacer, Seek
 
 __all__ = ["ReplayControl", "ReplaySession", "ReplayState"]
 
-log = logging.getLogger(__name__)
-
 CHECKPOINT_EVERY = 20.0
-"""Seconds of the log between two checkpoints."""
+"""Seconds of the log between two checkpoints that are kept while it is played."""
+BEFORE_PASS = 2.0
+"""A jump to a pass goes so many seconds before it."""
+LONGEST_END = 0.001
 
 
 @dataclass(frozen=True, slots=True)
 class ReplayState:
-    """Where a replay stands. ``catching_up`` is the part (0 to 1) of a jump that is done, None when there is none."""
+    """Where a replay stands. ``catching_up`` is the part (0 to 1) of a jump that is done, None when there is none.
+
+    ``indexed`` is the part of the recording that any jump reaches at once, None where no index is made.
+    """
 
     position: float
     duration: float
@@ -41,14 +49,17 @@ class ReplayState:
     playing: bool
     ended: bool
     catching_up: float | None = None
+    indexed: float | None = None
 
 
 class ReplayControl:
     """Play, pause, speed and seek; each returns at once and may be called from any thread."""
 
-    def __init__(self, pacer: Pacer) -> None:
+    def __init__(self, pacer: Pacer[Event], starts: PassStarts) -> None:
         self._pacer = pacer
+        self._starts = starts
         self.catching_up: float | None = None
+        self.indexed: float | None = None
 
     def play(self) -> None:
         """Lets time run; at the end, from the start again."""
@@ -67,53 +78,87 @@ class ReplayControl:
         self._pacer.seek(position)
 
     @property
+    def passes(self) -> tuple[PassStart, ...]:
+        """When the tractor came onto each pass: all of them with a whole index, else those that were played."""
+        return self._starts.found
+
+    def seek_pass(self, number: int) -> bool:
+        """Jumps to just before the tractor first came onto this pass; False when that is not known."""
+        start = next((one for one in self._starts.found if one.number == number), None)
+        if start is None:
+            return False
+        self.seek(start.position - BEFORE_PASS)
+        return True
+
+    @property
     def state(self) -> ReplayState:
         """Where the replay stands now."""
         pacer = self._pacer
         return ReplayState(
-            pacer.position, pacer.duration, pacer.speed, pacer.playing, pacer.ended, catching_up=self.catching_up
+            pacer.position,
+            pacer.duration,
+            pacer.speed,
+            pacer.playing,
+            pacer.ended,
+            catching_up=self.catching_up,
+            indexed=self.indexed,
         )
 
 
-@dataclass(frozen=True, slots=True)
-class _Checkpoint:
-    """The engine after the first ``index`` chunks and the first ``given`` commands, at ``arrival``."""
-
-    arrival: float
-    index: int
-    given: int
-    engine: Engine
-
-
 class ReplaySession:
-    """Drives the engine from a log at the chosen pace."""
+    """Drives the engine from a log, or from a recorded drive, at the chosen pace. ``of_drive`` takes all from a drive.
 
-    def __init__(
+    ``compare`` lets a second engine take the same events; its track is the snapshots' ``ghost``.
+    """
+
+    def __init__(  # noqa: PLR0913 - what a replay is made of; a call names each
         self,
         job: Job,
-        source: FileLog,
+        source: FileLog | RecordedDrive,
         filter_name: str | None = None,
         speed: float = 1.0,
         notices: tuple[str, ...] = (),
         settings: FilterSettings | None = None,
+        *,
+        compare: Comparison | None = None,
     ) -> None:
         self.job = job
         self.tap = Tap()
-        self._log = source
-        self._engine = Engine(job, filter_name=filter_name, settings=settings, notices=notices)
-        self._engine.step(SourceUp(0.0, source.description))
-        self._pacer = Pacer(source.chunks, speed)
-        self.replay = ReplayControl(self._pacer)
-        self._publisher = Publisher(self._engine.snapshot)
+        self._setup = Setup(job, filter_name, settings, notices, compare)
+        self._timeline = timeline_of(source)
+        self._engines = Engines.made_of(self._setup)
+        for event in self._timeline.first:
+            self._engines.step(event)
+        self._pacer: Pacer[Event] = Pacer(self._timeline.events, speed)
+        self._starts = PassStarts()
+        self.replay = ReplayControl(self._pacer, self._starts)
+        self._publisher = Publisher(self._engines.snapshot)
         self._posted: queue.SimpleQueue[Command] = queue.SimpleQueue()
         self._commands: list[Commanded] = []
         self._given = 0
         self._index = 0
         self._generation = 0
         self._look_ahead: SetLookAhead | None = None
-        self._checkpoints = [_Checkpoint(0.0, 0, 0, self._engine.fork())]
+        self._checkpoints = Checkpoints(self._engines.fork())
         self._ended = False
+        self._indexing: Index | None = None
         self._thread = threading.Thread(target=self._run, name="engine", daemon=True)
+
+    @classmethod
+    def of_drive(cls, drive: RecordedDrive, speed: float = 1.0, compare: Comparison | None = None) -> "ReplaySession":
+        """The drive as it was, with its own documents and filter; what it breaks off at is among the notices."""
+        return cls(drive.job, drive, drive.filter_name, speed, drive.notices, drive.settings, compare=compare)
+
+    def make_index(self, folder: Path | None) -> None:
+        """Makes any second near: reads the index from this folder, or lets a process make it. Returns at once."""
+        if self._indexing is None:
+            self.replay.indexed = 0.0
+            self._indexing = Index(self._timeline, self._setup, self._take_part, folder)
+            self._indexing.start()
+
+    def wait_for_index(self, timeout: float) -> bool:
+        """Waits until the index is whole; False when it is not by then, or none is made."""
+        return self._indexing is not None and self._indexing.wait(timeout) and self._indexing.done >= 1.0
 
     def start(self) -> None:
         """Begins to play."""
@@ -125,6 +170,8 @@ class ReplaySession:
         self._pacer.close()
         if self._thread.is_alive():
             self._thread.join(timeout=5.0)
+        if self._indexing is not None:
+            self._indexing.close()
 
     def snapshot(self) -> Snapshot:
         """The newest snapshot."""
@@ -143,17 +190,25 @@ class ReplaySession:
         """Calls ``hear`` after each new snapshot."""
         return self._publisher.subscribe(hear)
 
+    def _take_part(self, part: IndexPart) -> None:
+        """On the index's thread."""
+        if part.checkpoint is not None:
+            self._checkpoints.add_found(part.checkpoint)
+        self._starts.take(part.starts)
+        self.replay.indexed = part.done
+
     def _run(self) -> None:
         while not self._pacer.closed:
             due = self._pacer.next(self._patience())
             match due:
-                case Chunk():
-                    self.tap.hear(due)
-                    self._advance(due)
                 case Seek():
                     self._jump(due)
                 case None:
                     self._publisher.tell()
+                case _:
+                    if not isinstance(due, Commanded):
+                        self.tap.hear(due)
+                    self._advance(due)
             self._take_posted()
             self._close_epoch(self._here())
             self._note_the_end()
@@ -161,16 +216,18 @@ class ReplaySession:
     def _patience(self) -> float | None:
         """How long nothing needs to be done but what the pacer has: to the hearers' turn or the close of an epoch."""
         waits = [self._publisher.least_interval] if self._publisher.pending else []
-        wake_at, speed = self._engine.wake_at, self._pacer.speed
-        if wake_at is not None and self._pacer.playing and math.isfinite(speed):
-            waits.append(max((wake_at - self._pacer.position) / speed, 0.001))
+        wake_at, speed = self._engines.wake_at, self._pacer.speed
+        if self._timeline.closes_epochs and wake_at is not None and self._pacer.playing and math.isfinite(speed):
+            waits.append(max((wake_at - self._pacer.position) / speed, LONGEST_END))
         return min(waits, default=None)
 
     def _close_epoch(self, until: float) -> None:
         """Closes a half-received epoch whose time is over, at the instant at which a live session would."""
-        chunks = self._log.chunks
-        following = chunks[self._index].arrival if self._index < len(chunks) else math.inf
-        while (close := self._engine.close_epoch) is not None and close.arrival <= until:
+        if not self._timeline.closes_epochs:
+            return
+        events = self._timeline.events
+        following = events[self._index].arrival if self._index < len(events) else math.inf
+        while (close := self._engines.close_epoch) is not None and close.arrival <= until:
             if close.arrival >= following:
                 return
             self._step(close)
@@ -187,52 +244,53 @@ class ReplaySession:
             self._step(given)
 
     def _here(self) -> float:
-        """The playing position, between the chunk taken last and the next one."""
-        chunks = self._log.chunks
-        last = chunks[self._index - 1].arrival if self._index else 0.0
-        following = chunks[self._index].arrival if self._index < len(chunks) else self._pacer.duration
+        """The playing position, between the event taken last and the next one."""
+        events = self._timeline.events
+        last = events[self._index - 1].arrival if self._index else 0.0
+        following = events[self._index].arrival if self._index < len(events) else self._pacer.duration
         return min(max(self._pacer.position, last), following)
 
     def _remember(self, given: Commanded) -> None:
         """Keeps a command at its place. Checkpoints farther on do not know it and are dropped."""
         self._commands.insert(self._given, given)
         self._given += 1
-        self._checkpoints = [one for one in self._checkpoints if one.index <= self._index]
+        self._checkpoints.forget_after(self._index, given.arrival)
 
-    def _advance(self, chunk: Chunk) -> None:
-        """One chunk, after the commands that were given before it."""
-        while self._given < len(self._commands) and self._commands[self._given].arrival <= chunk.arrival:
+    def _advance(self, event: Event) -> None:
+        """One event, after the commands that were given here before it."""
+        while self._given < len(self._commands) and self._commands[self._given].arrival <= event.arrival:
             given = self._commands[self._given]
             self._given += 1
             self._close_epoch(given.arrival)
             self._step(given)
-        self._close_epoch(chunk.arrival)
+        self._close_epoch(event.arrival)
         self._index += 1
-        self._step(chunk)
-        last = self._checkpoints[-1]
-        if self._index > last.index and chunk.arrival >= last.arrival + CHECKPOINT_EVERY:
-            self._checkpoints.append(_Checkpoint(chunk.arrival, self._index, self._given, self._engine.fork()))
+        if not (self._look_ahead is not None and _is_look_ahead(event)):
+            self._step(event)
+        last = self._checkpoints.before(self._index)
+        if self._index > last.index and event.arrival >= last.arrival + CHECKPOINT_EVERY:
+            checkpoint = Checkpoint(event.arrival, self._index, self._given, self._engines.fork())
+            self._checkpoints.add(checkpoint)
 
     def _step(self, event: Event) -> None:
-        try:
-            snapshot = self._engine.step(event)
-        except Exception as error:
-            log.exception("the engine failed on %s", type(event).__name__)
-            snapshot = self._engine.failed(event.arrival, str(error))
+        snapshot = self._engines.step(event)
+        start = self._starts.look(snapshot)
+        if start is not None and (self._indexing is None or not self._indexing.done):
+            self._starts.take((start,))
         self._publisher.publish(snapshot)
 
     def _note_the_end(self) -> None:
         if self._pacer.ended and not self._ended:
             self._ended = True
-            self._step(SourceDown(self._pacer.duration, f"{self._log.description} has ended", ended=True))
+            self._step(SourceDown(self._pacer.duration, f"{self._timeline.description} has ended", ended=True))
             self._publisher.tell()
 
     def _jump(self, seek: Seek) -> None:
-        """Brings the engine to what the first ``seek.index`` chunks say; a newer jump or the end breaks it off."""
-        start = self._checkpoints[bisect.bisect_right(self._checkpoints, seek.index, key=_index) - 1]
+        """Brings the engine to what the first ``seek.index`` events say; a newer jump or the end breaks it off."""
+        start = self._checkpoints.before(seek.index)
         if self._ended or not start.index <= self._index <= seek.index:
             self._generation += 1
-            self._engine = start.engine.fork(generation=self._generation)
+            self._engines = start.engines.fork(generation=self._generation)
             self._index, self._given = start.index, start.given
             self._ended = False
             if self._look_ahead is not None:
@@ -242,10 +300,11 @@ class ReplaySession:
             if self._pacer.closed or self._pacer.sought:
                 break
             self.replay.catching_up = done / todo
-            self._advance(self._log.chunks[index])
+            self._advance(self._timeline.events[index])
         self.replay.catching_up = None
+        self._publisher.publish(self._engines.snapshot)
         self._publisher.tell()
 
 
-def _index(checkpoint: _Checkpoint) -> int:
-    return checkpoint.index
+def _is_look_ahead(event: Event) -> bool:
+    return isinstance(event, Commanded) and isinstance(event.command, SetLookAhead)

@@ -10,8 +10,8 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Generic, Protocol, TypeVar
 
-from guidance_app.model import Chunk
 from guidance_app.sources import Source, SourceEvent
 
 __all__ = ["MAX_SPEED", "MIN_SPEED", "Paced", "Pacer", "Seek"]
@@ -19,6 +19,18 @@ __all__ = ["MAX_SPEED", "MIN_SPEED", "Paced", "Pacer", "Seek"]
 MIN_SPEED = 0.5
 MAX_SPEED = 50.0
 """The slowest and fastest play; ``math.inf`` beside them plays as fast as the chunks are taken."""
+
+
+class Timed(Protocol):
+    """Anything with a time in seconds of the log."""
+
+    @property
+    def arrival(self) -> float:
+        """When it is due."""
+        ...
+
+
+T = TypeVar("T", bound=Timed)
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +45,7 @@ class Seek:
     index: int
 
 
-class Pacer:
+class Pacer(Generic[T]):
     """Plays chunks in their own time, from one consumer's thread, under control from any other.
 
     The consumer calls ``next`` in a loop and gets, in this order of precedence,
@@ -50,9 +62,7 @@ class Pacer:
     With the speed ``math.inf`` every chunk is due at once and the position is that of the chunk taken last.
     """
 
-    def __init__(
-        self, chunks: Sequence[Chunk], speed: float = 1.0, clock: Callable[[], float] = time.monotonic
-    ) -> None:
+    def __init__(self, chunks: Sequence[T], speed: float = 1.0, clock: Callable[[], float] = time.monotonic) -> None:
         self._chunks = chunks
         self._clock = clock
         self._changed = threading.Condition()
@@ -94,7 +104,7 @@ class Pacer:
         """Whether the consumer should leave its loop."""
         return self._closed
 
-    def next(self, timeout: float | None = None) -> Chunk | Seek | None:
+    def next(self, timeout: float | None = None) -> T | Seek | None:
         """The next thing to do, or None after ``timeout`` seconds of the clock or a control; see the class."""
         with self._changed:
             controls = self._controls
@@ -191,7 +201,7 @@ class Pacer:
             return self._anchor_time
         return self._anchor_time + (self._chunks[self._index].arrival - self._anchor_position) / self._speed
 
-    def _take(self) -> Chunk:
+    def _take(self) -> T:
         chunk = self._chunks[self._index]
         self._index += 1
         if math.isinf(self._speed):
@@ -219,7 +229,7 @@ class Paced:
             yield event
 
 
-def _arrival(chunk: Chunk) -> float:
+def _arrival(chunk: Timed) -> float:
     return chunk.arrival
 
 

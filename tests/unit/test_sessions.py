@@ -194,7 +194,7 @@ def test_a_replay_closes_an_incomplete_epoch_in_its_own_interval(tmp_path: Path)
     late = []
 
     def hear(snapshot: Snapshot) -> None:
-        if snapshot.fix is not None and snapshot.link.status is LinkStatus.FIX:
+        if snapshot.fix_interval is not None and snapshot.link.status is LinkStatus.FIX:
             late.append(snapshot.arrival - snapshot.fix.arrival)
 
     hearing = Hearing()
