@@ -9,7 +9,7 @@ COMMANDS: Mapping[str, str] = MappingProxyType(
     {
         "demo": "see it drive: the embedded sample, played at once",
         "run": "drive: the console on a live receiver",
-        "replay": "play a receiver's log on the console",
+        "replay": "play a recorded drive or a receiver's log on the console",
         "inspect": "say what a receiver's log holds",
         "process": "run a log through the engine without a screen and write a table",
         "plan": "plan a field's passes at the desk",

@@ -14,24 +14,29 @@ from guidance_app.estimation.filter import FilterSettings
 from guidance_app.estimation.filters import FILTERS
 from guidance_app.exchange import ExchangeError
 from guidance_app.guidance.planning import PlanError
+from guidance_app.runtime import Comparison
 from guidance_app.sources import SourceError
 from guidance_app.store import StoreError, data_folder, field_from_file, simulated_notice
 
 __all__ = [
     "UseError",
+    "add_compare_options",
     "add_console_options",
     "add_data_option",
     "add_filter_option",
     "add_job_options",
     "chosen_data_folder",
+    "comparison",
     "filter_settings",
     "job_from_options",
     "known_errors",
     "notices_of",
+    "refuse_job_options",
     "replay_speed",
 ]
 
 DEFAULT_PORT = 8080
+DEFAULT_WIDTH = 3.0
 
 
 class UseError(ValueError):
@@ -98,7 +103,7 @@ def add_job_options(parser: argparse.ArgumentParser) -> None:
         "--field", type=Path, metavar="FILE", help="field as GeoJSON or as a document of the data folder"
     )
     parser.add_argument(
-        "--width", type=_width, default=3.0, metavar="METRES", help="working width in metres (default 3)"
+        "--width", type=_width, metavar="METRES", help=f"working width in metres (default {DEFAULT_WIDTH:g})"
     )
     add_filter_option(parser)
 
@@ -110,7 +115,8 @@ def job_from_options(arguments: argparse.Namespace) -> Job:
     """
     field: FieldDocument | None = None if arguments.field is None else field_from_file(arguments.field)
     tractor = Tractor(name="Tractor", antenna_height=0.0)
-    implement = Implement(name="Implement", working_width=arguments.width, offset_back=0.0, length=1.0)
+    width = DEFAULT_WIDTH if arguments.width is None else arguments.width
+    implement = Implement(name="Implement", working_width=width, offset_back=0.0, length=1.0)
     operation = None
     if field is not None:
         operation = Operation(
@@ -123,6 +129,45 @@ def job_from_options(arguments: argparse.Namespace) -> Job:
     return Job(
         tractor=tractor, implement=implement, receiver=Receiver(name="Receiver"), field=field, operation=operation
     )
+
+
+def add_compare_options(parser: argparse.ArgumentParser) -> None:
+    """``--compare-filter``, ``--compare-look-ahead`` and ``--compare-antenna``."""
+    group = parser.add_argument_group("a second engine beside, whose track is shown as a ghost")
+    group.add_argument("--compare-filter", choices=sorted(FILTERS), metavar="NAME", help="with another filter")
+    group.add_argument(
+        "--compare-look-ahead", type=float, metavar="SECONDS", help="with another look-ahead, 0.5 to 3 s"
+    )
+    group.add_argument(
+        "--compare-antenna",
+        type=float,
+        nargs=3,
+        metavar=("FORWARD", "RIGHT", "HEIGHT"),
+        help="with the antenna in another place, metres from the middle of the rear axle",
+    )
+
+
+def comparison(arguments: argparse.Namespace, job: Job) -> Comparison | None:
+    """What the second engine has else; None without one. Raises ``UseError`` for what documents cannot hold."""
+    antenna = None if arguments.compare_antenna is None else tuple(arguments.compare_antenna)
+    if arguments.compare_filter is None and arguments.compare_look_ahead is None and antenna is None:
+        return None
+    made = Comparison(arguments.compare_filter, None, arguments.compare_look_ahead, antenna)
+    try:
+        made.job_of(job)
+    except ValidationError as error:
+        first = error.errors()[0]
+        msg = f"nothing to compare with: {first['loc'][0]} is {first['input']!r}, {first['msg'].lower()}"
+        raise UseError(msg) from error
+    return made
+
+
+def refuse_job_options(arguments: argparse.Namespace, recording: Path) -> None:
+    """A recording brings its own documents and filter. Raises ``UseError`` where the command line names others."""
+    for name in ("field", "width", "filter", "settings"):
+        if getattr(arguments, name) is not None:
+            msg = f"{recording} is a recording with its own documents and filter: leave --{name} out"
+            raise UseError(msg)
 
 
 def notices_of(log: Path) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from guidance_app.documents import FieldDocument, Job, Method, Operation, Settin
 from guidance_app.exchange import ExchangeError
 from guidance_app.guidance.planning import PlanError
 from guidance_app.language import sentence
-from guidance_app.runtime import LiveSession, Session, SessionManager
+from guidance_app.runtime import LiveSession, Session, SessionManager, recorded_session
 from guidance_app.sources import SourceError, open_source
 from guidance_app.store import Store, StoreError
 
@@ -50,8 +50,9 @@ class House:
     # --- what is driven --------------------------------------------------------------------------------------------
 
     def drive(self, job: Job) -> None:
-        """Ends what is driven and drives ``job`` from its receiver's source. Raises ``SourceError``."""
-        self.take(LiveSession(job, open_source(job.receiver.source)))
+        """Ends what is driven and drives ``job`` from its receiver's source, recorded. Raises ``SourceError``."""
+        source = open_source(job.receiver.source)
+        self.take(LiveSession(job, source) if self.store is None else recorded_session(self.store.root, job, source))
 
     def take(self, session: Session) -> None:
         """Ends what is driven and goes on with this session."""
