@@ -19,6 +19,7 @@ from dataclasses import asdict, dataclass
 from importlib.metadata import PackageNotFoundError, version
 from multiprocessing.connection import Connection
 from pathlib import Path
+from types import MappingProxyType
 
 from platformdirs import user_cache_dir
 
@@ -232,11 +233,18 @@ class _Feed:
         return self._held.readline()
 
 
+class _Pickler(pickle.Pickler):
+    """Knows read-only mappings too."""
+
+    def reducer_override(self, held: object) -> object:
+        return (MappingProxyType, (dict(held),)) if isinstance(held, MappingProxyType) else NotImplemented
+
+
 def _work(sending: Connection, timeline: Timeline, setup: Setup, every: float) -> None:
     """The process: each part as one frame of one pickling, so that what checkpoints share is sent once."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the program that plays
     buffer = io.BytesIO()
-    pickler = pickle.Pickler(buffer, protocol=5)
+    pickler = _Pickler(buffer, protocol=5)
     try:
         for part in index_parts(timeline, setup, every):
             pickler.dump(part)
