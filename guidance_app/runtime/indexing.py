@@ -20,6 +20,7 @@ from importlib.metadata import PackageNotFoundError, version
 from multiprocessing.connection import Connection
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 from platformdirs import user_cache_dir
 
@@ -236,7 +237,7 @@ class _Feed:
 class _Pickler(pickle.Pickler):
     """Knows read-only mappings too."""
 
-    def reducer_override(self, held: object) -> object:
+    def reducer_override(self, held: object) -> Any:
         return (MappingProxyType, (dict(held),)) if isinstance(held, MappingProxyType) else NotImplemented
 
 
