@@ -234,11 +234,15 @@ class _Feed:
         return self._held.readline()
 
 
+def _read_only(members: dict[Any, Any]) -> MappingProxyType[Any, Any]:
+    return MappingProxyType(members)
+
+
 class _Pickler(pickle.Pickler):
     """Knows read-only mappings too."""
 
     def reducer_override(self, held: object) -> Any:
-        return (MappingProxyType, (dict(held),)) if isinstance(held, MappingProxyType) else NotImplemented
+        return (_read_only, (dict(held),)) if isinstance(held, MappingProxyType) else NotImplemented
 
 
 def _work(sending: Connection, timeline: Timeline, setup: Setup, every: float) -> None:
