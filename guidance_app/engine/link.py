@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from guidance_app.language import message, sentence
 from guidance_app.model import (
     CORRECTIONS,
     RECEIVER,
@@ -48,7 +49,7 @@ def after_up(state: LinkState, event: SourceUp) -> LinkState:
     state = replace(state, what=event.what)
     if event.link == CORRECTIONS:
         return _changed(state, LinkStatus.CORRECTED, event.arrival, event.what)
-    return _changed(state, LinkStatus.NO_DATA, event.arrival, f"waiting for data from {event.what}")
+    return _changed(state, LinkStatus.NO_DATA, event.arrival, sentence("waiting for data from {what}", what=event.what))
 
 
 def after_down(state: LinkState, event: SourceDown) -> LinkState:
@@ -85,9 +86,16 @@ def _told(state: LinkState, link: str, closed: tuple[Observation, ...], read: in
     if without is not None:
         return LinkStatus.NO_FIX, without.reason
     if read == 0:
-        where = f"from {state.what} " if state.what else ""
-        return LinkStatus.NO_SENTENCE, f"bytes arrive {where}but no sentence is valid: is the baud rate right?"
+        return LinkStatus.NO_SENTENCE, _noise(state.what)
     if state.status in SILENT:
-        missing = "position" if link == RECEIVER else "reading"
-        return LinkStatus.NO_FIX, f"sentences arrive, but no {missing} yet"
+        if link != RECEIVER:
+            return LinkStatus.NO_FIX, message("sentences arrive, but no reading yet")
+        return LinkStatus.NO_FIX, message("sentences arrive, but no position yet")
     return state.status, state.reason
+
+
+def _noise(what: str) -> str:
+    """A receiver set to another baud rate sends what looks like this."""
+    if not what:
+        return message("bytes arrive but no sentence is valid: is the baud rate right?")
+    return sentence("bytes arrive from {what} but no sentence is valid: is the baud rate right?", what=what)

@@ -1,12 +1,14 @@
 """Host and port of a source's address, and a connection to them that says in words why there is none."""
 
 import errno
+import os
 import select
 import socket
 import threading
 import time
 from urllib.parse import SplitResult, urlsplit
 
+from guidance_app.language import Sentence, sentence
 from guidance_app.sources import SourceError
 from guidance_app.sources.kept import READ_S, LinkError
 
@@ -45,39 +47,58 @@ def dial(host: str, port: int, stop: threading.Event) -> socket.socket:
     try:
         places = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)
     except (OSError, UnicodeError):
-        msg = f"{host} is not known in this network: check the spelling, or write its number, as in 192.168.1.20"
-        raise LinkError(msg) from None
+        raise LinkError(
+            sentence(
+                "{host} is not known in this network: check the spelling, or write its number, as in 192.168.1.20",
+                host=host,
+            )
+        ) from None
     deadline = time.monotonic() + DIAL_S
-    reason = ""
+    reason = None
     for family, kind, protocol, _, place in places:
         connection = socket.socket(family, kind, protocol)
         try:
-            reason = _why_not(connection, place, deadline, stop)
+            number = _connect(connection, place, deadline, stop)
         except BaseException:
             connection.close()
             raise
-        if not reason:
+        if not number:
             connection.settimeout(READ_S)
             return connection
         connection.close()
-    raise LinkError(reason.format(host=host, port=port))
+        reason = _why_not(number, host, port)
+    raise LinkError(reason)
 
 
-def _why_not(connection: socket.socket, place: object, deadline: float, stop: threading.Event) -> str:
-    """Connects; why that failed, with {host} and {port} to fill in, or nothing when it did not."""
+def _connect(connection: socket.socket, place: object, deadline: float, stop: threading.Event) -> int:
+    """Connects; 0, or the number of the error."""
     connection.settimeout(0.0)
     number = connection.connect_ex(place)  # type: ignore[arg-type]  # as getaddrinfo has given it
     while number in (errno.EINPROGRESS, errno.EWOULDBLOCK, errno.EALREADY):
         if stop.is_set() or time.monotonic() > deadline:
-            return "{host} does not answer: is it switched on and in the same network?"
+            return errno.ETIMEDOUT
         _, writable, failed = select.select([], [connection], [connection], READ_S)
         if writable or failed:
             number = connection.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR)
+    return number
+
+
+def _why_not(number: int, host: str, port: int) -> Sentence:
+    if number == errno.ETIMEDOUT:
+        return sentence("{host} does not answer: is it switched on and in the same network?", host=host)
     if number == errno.ECONNREFUSED:
-        return "{host} is there, but nothing answers at its port {port}: is the port right, and its server running?"
-    if number:
-        return f"{{host}} cannot be reached: {errno.errorcode.get(number, number)}"
-    return ""
+        return sentence(
+            "{host} is there, but nothing answers at its port {port}: is the port right, and its server running?",
+            host=host,
+            port=port,
+        )
+    return sentence(
+        "{host} cannot be reached ({error}): is this machine in its network?", host=host, error=os.strerror(number)
+    )
+
+
+def _broken(what: str, error: OSError) -> Sentence:
+    return sentence("the connection to {what} broke: {error}", what=what, error=error.strerror or str(error))
 
 
 class SocketConnection:
@@ -94,15 +115,18 @@ class SocketConnection:
             data = self._socket.recv(RECEIVED_AT_ONCE)
         except TimeoutError:
             if time.monotonic() - self._heard > SILENT_S:
-                msg = f"{self.what} has sent nothing for {SILENT_S:.0f} s: connecting again"
-                raise LinkError(msg) from None
+                raise LinkError(
+                    sentence(
+                        "{what} has sent nothing for {seconds:.0f} s: connecting again",
+                        what=self.what,
+                        seconds=SILENT_S,
+                    )
+                ) from None
             return b""
         except OSError as error:
-            msg = f"the connection to {self.what} broke: {error.strerror or error}"
-            raise LinkError(msg) from None
+            raise LinkError(_broken(self.what, error)) from None
         if not data:
-            msg = f"{self.what} has closed the connection"
-            raise LinkError(msg)
+            raise LinkError(sentence("{what} has closed the connection", what=self.what))
         self._heard = time.monotonic()
         return data
 
@@ -111,8 +135,7 @@ class SocketConnection:
         try:
             self._socket.sendall(data)
         except OSError as error:
-            msg = f"the connection to {self.what} broke: {error.strerror or error}"
-            raise LinkError(msg) from None
+            raise LinkError(_broken(self.what, error)) from None
 
     def close(self) -> None:
         """Closes it."""

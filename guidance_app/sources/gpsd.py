@@ -6,6 +6,7 @@ the list of devices is looked at, because a gpsd without a receiver is silent fo
 
 import threading
 
+from guidance_app.language import sentence
 from guidance_app.sources.addresses import SocketConnection, dial, host_and_port
 from guidance_app.sources.kept import Kept, LinkError
 
@@ -50,8 +51,9 @@ class _Watching:
         if len(self._greeting) < GREETING_BYTES:
             self._greeting += data[:GREETING_BYTES]
             if NO_DEVICE in self._greeting:
-                msg = f"{self.what} has no receiver: plug it in, or name it in gpsd's own settings"
-                raise LinkError(msg)
+                raise LinkError(
+                    sentence("{what} has no receiver: plug it in, or name it in gpsd's own settings", what=self.what)
+                )
         return data
 
     def write(self, data: bytes) -> None:

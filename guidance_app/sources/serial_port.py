@@ -19,6 +19,7 @@ from urllib.parse import SplitResult, parse_qsl, unquote
 
 import serial
 
+from guidance_app.language import Sentence, message, sentence
 from guidance_app.sources import SourceError
 from guidance_app.sources.addresses import split
 from guidance_app.sources.baud import BAUD_RATES, BaudHunt, BaudMemory
@@ -35,6 +36,7 @@ else:
 __all__ = ["OpenPort", "Port", "SerialSettings", "open_serial", "serial_source"]
 
 WRITE_S = 0.5
+UNPLUGGED = message("{path} was unplugged: plug the device in again")
 LOWEST_BAUD, HIGHEST_BAUD = 300, 4_000_000
 PAUSES = Pauses(first=0.5, longest=1.0)
 """Looking for a port costs nothing, so a device that was plugged in again is back within about a second."""
@@ -146,8 +148,7 @@ class _Finder:
         if len(alike) > 1:
             alike = [port for port in alike if port.plug == self._seen.plug]
         if not alike:
-            msg = f"{path} is unplugged: plug the device in again"
-            raise LinkError(msg)
+            raise LinkError(sentence("{path} is unplugged: plug the device in again", path=path))
         return alike[0]
 
 
@@ -179,8 +180,7 @@ class _SerialLink:
             if self._hunt is not None and self._hunt.hear(data, self._settings.clock()):
                 self._follow(self._hunt)
         except PORT_ERRORS:
-            msg = f"{self._path} was unplugged: plug the device in again"
-            raise LinkError(msg) from None
+            raise LinkError(sentence(UNPLUGGED, path=self._path)) from None
         return data
 
     def _follow(self, hunt: BaudHunt) -> None:
@@ -195,8 +195,7 @@ class _SerialLink:
         try:
             self._port.write(data)
         except PORT_ERRORS as error:
-            msg = f"{self._path} takes no data: {error}"
-            raise LinkError(msg) from None
+            raise LinkError(sentence("{path} takes no data: {error}", path=self._path, error=str(error))) from None
 
     def close(self) -> None:
         """Gives the port back."""
@@ -206,23 +205,27 @@ class _SerialLink:
             return
 
 
-def _why_not(error: Exception, path: str) -> str:
+def _why_not(error: Exception, path: str) -> Sentence:
     """Why a port could not be opened and what to do; pyserial's texts are its own affair."""
     number = getattr(error, "errno", None)
     text = str(error)
     if number in (errno.ENOENT, errno.ENXIO, errno.ENODEV) or "FileNotFoundError" in text:
-        return f"{path} is not there: plug the device in, or choose another port"
+        return sentence("{path} is not there: plug the device in, or choose another port", path=path)
     if number in (errno.EAGAIN, errno.EBUSY) or "PermissionError" in text:
-        return f"{path} is in use by another program: close it"
+        return sentence("{path} is in use by another program: close it", path=path)
     if number in (errno.EACCES, errno.EPERM):
         group = _group_of(path)
-        command = f"sudo usermod -aG {group} $USER"
-        return f"no permission for {path}: add your user to the group {group} ({command}) and log in again"
+        return sentence(
+            "no permission for {path}: add your user to the group {group} (sudo usermod -aG {group} $USER) and log in"
+            " again",
+            path=path,
+            group=group,
+        )
     if number == errno.EIO:
-        return f"{path} was unplugged: plug the device in again"
+        return sentence(UNPLUGGED, path=path)
     if number in (errno.ENOTTY, errno.EISDIR) or "Could not configure port" in text:
-        return f"{path} is not a serial port: choose another one"
-    return f"{path} cannot be opened: {text}"
+        return sentence("{path} is not a serial port: choose another one", path=path)
+    return sentence("{path} cannot be opened: {error}", path=path, error=text)
 
 
 def _group_of(path: str) -> str:

@@ -9,6 +9,7 @@ import re
 import socket
 import threading
 
+from guidance_app.language import Sentence, sentence
 from guidance_app.sources import SourceError
 from guidance_app.sources.addresses import split
 from guidance_app.sources.kept import READ_S, Kept, LinkError
@@ -59,27 +60,33 @@ class _Listener:
         except TimeoutError:
             return b""
         except OSError as error:
-            msg = f"{self.what} broke: {error.strerror or error}"
-            raise LinkError(msg) from None
+            raise LinkError(
+                sentence("the connection to {what} broke: {error}", what=self.what, error=error.strerror or str(error))
+            ) from None
         if data.startswith(FRAME):
             return b""
         return data + b"\r\n" if _ends_with_checksum(data) else data
 
     def write(self, data: bytes) -> None:
         """Refused: whoever sends datagrams to everybody does not say where to answer. Raises ``LinkError``."""
-        msg = f"{self.what} only listens: {len(data)} bytes cannot be sent over it"
-        raise LinkError(msg)
+        del data
+        raise LinkError(sentence("{what} only listens: nothing can be sent over it", what=self.what))
 
     def close(self) -> None:
         """Closes it."""
         self._socket.close()
 
 
-def _why_not(error: OSError, host: str, port: int) -> str:
+def _why_not(error: OSError, host: str, port: int) -> Sentence:
     if error.errno == errno.EADDRINUSE:
-        return f"UDP port {port} is in use by another program: close it, or let the receiver send to another port"
+        return sentence(
+            "UDP port {port} is in use by another program: close it, or let the receiver send to another port",
+            port=port,
+        )
     if error.errno == errno.EACCES:
-        return f"UDP port {port} may not be used: choose one from 1024 to 65535"
+        return sentence("UDP port {port} may not be used: choose one from 1024 to 65535", port=port)
     if error.errno in (errno.EADDRNOTAVAIL, -2) or isinstance(error, socket.gaierror):
-        return f"{host} is not an address of this machine: leave it out, as in udp://:{port}"
-    return f"UDP port {port} cannot be opened: {error.strerror or error}"
+        return sentence(
+            "{host} is not an address of this machine: leave it out, as in udp://:{port}", host=host, port=port
+        )
+    return sentence("UDP port {port} cannot be opened: {error}", port=port, error=error.strerror or str(error))
