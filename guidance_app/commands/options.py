@@ -126,9 +126,20 @@ def job_from_options(arguments: argparse.Namespace) -> Job:
             implement=implement.name,
             method=Method.ROUND_TRIP,
         )
-    return Job(
-        tractor=tractor, implement=implement, receiver=Receiver(name="Receiver"), field=field, operation=operation
-    )
+    return Job(tractor=tractor, implement=implement, receiver=_receiver(arguments), field=field, operation=operation)
+
+
+def _receiver(arguments: argparse.Namespace) -> Receiver:
+    """The receiver of ``--source`` and ``--attitude``, where the sub-command has them."""
+    source = getattr(arguments, "source", None)
+    attitude = getattr(arguments, "attitude", None)
+    if source is None:
+        return Receiver(name="Receiver")
+    try:
+        return Receiver(name="Receiver", source=source, attitude_source=attitude)
+    except ValidationError as error:
+        msg = f"the receiver's address is refused: {error.errors()[0]['msg'].lower()}"
+        raise UseError(msg) from error
 
 
 def add_compare_options(parser: argparse.ArgumentParser) -> None:

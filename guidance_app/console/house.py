@@ -8,14 +8,17 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
+from pydantic import ValidationError
+
 from guidance_app.boundary import BoundaryError
 from guidance_app.console.files import Files
-from guidance_app.documents import FieldDocument, Job, Method, Operation, Settings
+from guidance_app.documents import FieldDocument, Job, Method, Operation, Receiver, Settings
 from guidance_app.exchange import ExchangeError
 from guidance_app.guidance.planning import PlanError
 from guidance_app.language import sentence
 from guidance_app.runtime import LiveSession, Session, SessionManager, recorded_session
 from guidance_app.sources import SourceError, open_source
+from guidance_app.sources.ports import ListPorts, found_ports
 from guidance_app.store import Store, StoreError
 
 __all__ = ["SENTENCES", "House"]
@@ -30,9 +33,12 @@ WORKERS = 4
 class House:
     """What the console can do beside the drive. Its methods may be called from any thread; some take seconds."""
 
-    def __init__(self, manager: SessionManager, store: Store | None = None) -> None:
+    def __init__(
+        self, manager: SessionManager, store: Store | None = None, list_ports: ListPorts = found_ports
+    ) -> None:
         self.manager = manager
         self.store = store
+        self.list_ports = list_ports
         self.files = Files()
         self._workers = ThreadPoolExecutor(WORKERS, thread_name_prefix="house")
         self._changing = threading.Lock()
@@ -51,8 +57,17 @@ class House:
 
     def drive(self, job: Job) -> None:
         """Ends what is driven and drives ``job`` from its receiver's source, recorded. Raises ``SourceError``."""
-        source = open_source(job.receiver.source)
+        source = open_source(job.receiver.source, job.receiver.attitude_source)
         self.take(LiveSession(job, source) if self.store is None else recorded_session(self.store.root, job, source))
+
+    def use_source(self, uri: str) -> None:
+        """Ends what is driven and drives the same job from another receiver. Raises ``SourceError``."""
+        job = self.manager.job
+        try:
+            receiver = Receiver.model_validate({**job.receiver.model_dump(), "source": uri})
+        except ValidationError:
+            raise SourceError(sentence("The receiver's address is too long: write it shorter.")) from None
+        self.drive(job.model_copy(update={"receiver": receiver}))
 
     def take(self, session: Session) -> None:
         """Ends what is driven and goes on with this session."""

@@ -20,6 +20,7 @@ from guidance_app.model import (
     Snapshot,
 )
 from guidance_app.view.bar import QUALITIES, STALE_AFTER_S
+from guidance_app.view.links import beside_notices
 from guidance_app.view.units import INCH, area_text, offset_text, speed_text, speed_unit
 
 __all__ = [
@@ -137,7 +138,7 @@ def work_view(snapshot: Snapshot, now: float, units: Units, words: Words) -> Wor
         work_words=words("Working · press to lift" if snapshot.working else "Lifted · press to work"),
         pass_words=pass_words(snapshot.guidance, words),
         line_words=words("Moved {distance}", distance=_signed(line_offset(snapshot.offsets), units, words)),
-        notices=tuple(words.say(notice) for notice in snapshot.notices),
+        notices=(*beside_notices(snapshot, now, words), *(words.say(notice) for notice in snapshot.notices)),
     )
 
 

@@ -4,6 +4,7 @@ from guidance_app.console.desk import Panel, Place
 from guidance_app.console.panels.fields import Fields
 from guidance_app.console.panels.info import Info
 from guidance_app.console.panels.menu import Menu
+from guidance_app.console.panels.receiver import Receiver
 from guidance_app.console.panels.replay import Replay
 from guidance_app.console.panels.start import Start
 from guidance_app.console.panels.summary import Summary
@@ -21,6 +22,7 @@ PANELS: dict[str, type[Panel]] = {
     "views": Views,
     "replay": Replay,
     "info": Info,
+    "receiver": Receiver,
     "menu": Menu,
 }
 """While driving: by the name of their file, in the order of the tabs."""
@@ -28,5 +30,6 @@ PANELS: dict[str, type[Panel]] = {
 SETUP_PANELS: dict[str, type[Panel]] = {
     "start": Start,
     "fields": Fields,
+    "receiver": Receiver,
 }
 """While setting up, in the order of the tabs."""

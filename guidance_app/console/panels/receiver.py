@@ -1,0 +1,134 @@
+"""The receiver panel: which port is read, what comes over it, and how good it is."""
+
+import html
+from typing import Any, ClassVar
+from urllib.parse import quote
+
+import viser
+
+from guidance_app.console.desk import Desk, Hands
+from guidance_app.console.sky import SKY_STYLE, sky_svg
+from guidance_app.console.widgets import Shown, notice_html, rows_html, words_html
+from guidance_app.language import message
+from guidance_app.view.receiver import raw_text, receiver_view, sent_words
+
+__all__ = ["Receiver"]
+
+LINES = 14
+WORDS_EVERY = 4
+"""Everything is brought up to now once a second: this page is read, not driven by."""
+
+RAW_STYLE = """<style>
+.g-raw{margin:.2em .6em .5em;padding:.4em .6em;font:.62em/1.5 ui-monospace,monospace;white-space:pre;overflow-x:auto;
+ border-radius:.3em;background:var(--mantine-color-default-hover)}
+.g-long .g-words{white-space:normal}
+.g-plain{padding:0 .85em .4em;font-size:.7em;line-height:1.35}
+</style>"""
+
+
+class Receiver:
+    """Shows the receiver in use, and takes another one."""
+
+    title: ClassVar[str] = message("Receiver")
+
+    def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
+        self._hands = hands
+        self._words = words = hands.words
+        self._paths: dict[str, str] = {}
+        self._raw_wanted = False
+        self._asked: str | None = None
+        self._round = 0
+        gui.add_html(SKY_STYLE + RAW_STYLE)
+        self._link = Shown(gui)
+        self._grid = Shown(gui)
+        self._rows = Shown(gui)
+        self._sky = Shown(gui)
+        self._raw_button = gui.add_button(words("Show what it sends"), color="gray")
+        self._kinds = Shown(gui)
+        self._raw = Shown(gui)
+        with gui.add_folder(words("Another receiver")):
+            self._ports = gui.add_dropdown(words("Port"), (words("looking for ports"),))
+            self._look = gui.add_button(words("Look again"), color="gray")
+            self._address: Any = gui.add_text(words("Address"), hands.house.manager.job.receiver.source)
+            self._use = gui.add_button(words("Use this receiver"), color="green")
+            self._stay = gui.add_button(words("No, keep this one"), color="gray", visible=False)
+            self._warning = Shown(gui)
+        self._listen()
+        hands.later(self._find)
+
+    def _listen(self) -> None:
+        @self._raw_button.on_click
+        async def _(_: object) -> None:
+            self._raw_wanted = not self._raw_wanted
+            self._round = 0
+
+        @self._look.on_click
+        async def _(_: object) -> None:
+            self._hands.later(self._find)
+
+        @self._ports.on_update
+        async def _(event: viser.GuiEvent[viser.GuiDropdownHandle[str]]) -> None:
+            if event.client_id is not None and self._ports.value in self._paths:
+                self._address.value = self._paths[self._ports.value]
+
+        @self._use.on_click
+        async def _(_: object) -> None:
+            self._pressed()
+
+        @self._stay.on_click
+        async def _(_: object) -> None:
+            self._asked = None
+
+    def _find(self) -> None:
+        """Lists the ports of this machine; takes a moment on some systems."""
+        words = self._words
+        found = self._hands.house.list_ports()
+        self._paths = {
+            f"{port.path} · {port.name}" if port.name else port.path: f"serial://{quote(port.path)}" for port in found
+        }
+        nothing = (words("no port found: plug the receiver in"),)
+        choose = (words("choose one of {n}", n=len(found)), *self._paths)
+        self._ports.options = choose if found else nothing
+
+    def _pressed(self) -> None:
+        """Takes the address; while something is driven the first press asks, because the drive begins anew."""
+        uri = self._address.value.strip()
+        if self._hands.house.driving and self._asked != uri:
+            self._asked = uri
+            return
+        self._asked = None
+        self._hands.later(lambda: self._hands.house.use_source(uri))
+
+    def show(self, desk: Desk) -> None:
+        """Brings everything up to now, once a second."""
+        self._ask()
+        self._round += 1
+        if self._round % WORDS_EVERY != 1:
+            return
+        words = self._words
+        stream = self._hands.house.manager.tap.look(desk.now)
+        view = receiver_view(desk.snapshot, stream.rate, desk.now, words)
+        self._link.show(f'<div class="g-long">{words_html(view.link, view.link_level)}</div>')
+        self._grid.show(_plain_html(view.grid))
+        self._rows.show(rows_html(view.rows))
+        self._sky.show(sky_svg(view.sky) + _plain_html(view.sky_words))
+        self._raw_button.label = words("Hide what it sends" if self._raw_wanted else "Show what it sends")
+        self._kinds.show(rows_html(sent_words(stream.kinds, words)) if self._raw_wanted else "")
+        self._raw.show(self._raw_html(stream.lines) if self._raw_wanted else "")
+
+    def _raw_html(self, lines: tuple[bytes, ...]) -> str:
+        said = html.escape(raw_text(lines, LINES)) or html.escape(self._words("nothing has come yet"))
+        return f'<div class="g-raw">{said}</div>'
+
+    def _ask(self) -> None:
+        words = self._words
+        asks = self._asked is not None
+        self._use.label = words("Yes, begin anew with it") if asks else words("Use this receiver")
+        self._stay.visible = asks
+        warning = words("The drive ends and a new one begins with the other receiver; everything recorded stays.")
+        self._warning.show(notice_html([warning]) if asks else "")
+
+
+def _plain_html(text: str) -> str:
+    """A sentence that may need two lines; nothing for none."""
+    return f'<div class="g-plain">{html.escape(text)}</div>' if text else ""
