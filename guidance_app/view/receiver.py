@@ -64,7 +64,7 @@ def receiver_view(snapshot: Snapshot, rate: float, now: float, words: Words) -> 
         grid="" if fix is None or fix.cell is None else grid_words(fix.cell, words),
         rows=(*_fix_rows(snapshot, now, words), *_link_rows(snapshot, rate, now, words)),
         sky=sky_dots(snapshot.sky),
-        sky_words=sky_words(snapshot.sky, words),
+        sky_words=sky_words(snapshot.sky, words) if snapshot.link.sentences else "",
     )
 
 
