@@ -82,7 +82,9 @@ def test_quick_presses_all_count_and_in_order(stage: Stage) -> None:
 
 def test_no_button_is_left_without_a_test(stage: Stage) -> None:
     elsewhere = {"Driver", "Heading up", "North up", "Whole field", "Bring back", "Day", "Night", "Look ahead"}
-    known = {words for words, _ in COMMANDS} | elsewhere
+    of_menu = {"Fields, machines, recordings", "End the drive", "No, drive on"}
+    of_receiver = {"Show what it sends", "Look again", "Use this receiver", "No, keep this one"}
+    known = {words for words, _ in COMMANDS} | elsewhere | of_menu | of_receiver
     with stage.client() as client:
         stage.tick_until(client, lambda: client.control("Working · press to lift"))
         for control in client.controls.values():
@@ -202,4 +204,4 @@ def test_the_replay_panel_steers_a_recording(server: viser.ViserServer) -> None:
 def test_a_live_session_has_no_replay_panel(stage: Stage) -> None:
     with stage.client() as client:
         tabs = [one for one in client.controls.values() if "_tab_labels" in one["props"]]
-        assert [list(one["props"]["_tab_labels"]) for one in tabs][-1] == ["Work", "Views", "Info"]
+        assert [list(one["props"]["_tab_labels"]) for one in tabs][-1] == ["Work", "Views", "Info", "Receiver", "Menu"]
