@@ -8,7 +8,7 @@ a repair drops corners, it never moves one. Every way to a field ends here, so t
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -55,7 +55,10 @@ class BoundaryError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class FieldDraft:
-    """A field as a file, a finger or a drive gave it, not yet checked. ``parts`` holds the rings of each polygon."""
+    """A field as a file, a finger or a drive gave it, not yet checked. ``parts`` holds the rings of each polygon.
+
+    ``remarks`` say what was repaired or left out, ``assumptions`` what was guessed and may be asked for otherwise.
+    """
 
     name: str | None
     parts: tuple[PolygonRings, ...]
@@ -63,6 +66,15 @@ class FieldDraft:
     entrance: Position | None = None
     notes: str = ""
     remarks: tuple[str, ...] = ()
+    assumptions: tuple[str, ...] = ()
+
+    def remarked(self, remark: str) -> "FieldDraft":
+        """The same with one more remark."""
+        return replace(self, remarks=(*self.remarks, remark))
+
+    def with_extras(self, lines: Sequence[GuidanceLineDocument], entrance: Position | None) -> "FieldDraft":
+        """The same with guidance lines and an entrance."""
+        return replace(self, lines=(*self.lines, *lines), entrance=entrance or self.entrance)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,27 +9,25 @@ from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
 from pydantic import ValidationError
-from pyproj import CRS, Transformer
-from pyproj.exceptions import CRSError, ProjError
 
 from guidance_app.boundary import BoundaryError, FieldDraft, PolygonRings
 from guidance_app.documents import FieldDocument, GuidanceLineDocument, LineGeometry, Position
+from guidance_app.exchange.asking import ReadOptions, changed_from
+from guidance_app.exchange.files import Files
+from guidance_app.geodesy import crs_named
 
-__all__ = ["read_drafts", "written_field"]
+__all__ = ["read", "written"]
 
 ROLE = "guidance_app"
 NAME_PROPERTIES = ("name", "Name", "NAME", "field_name", "FieldName", "label", "title", "id")
 """Where a field's name is looked for, first come first served; ``id`` at last."""
-ACCURACY = 1.0
-"""Metres; a change of datum that is less accurate is refused (Tokyo without its grid is silently up to 15 m off)."""
-
-Place = Callable[[float, float], Position]
+Change = Callable[[list[Position]], list[Position]]
 
 
-def read_drafts(content: bytes) -> tuple[FieldDraft, ...]:
+def read(files: Files, options: ReadOptions) -> tuple[FieldDraft, ...]:
     """A draft for each feature with a polygon. Raises ``BoundaryError``."""
-    root = _object(content)
-    place = _place_of(root)
+    root = _object(files.content())
+    change = _change_of(root, options)
     features = _features(root)
     fields = [feature for feature in features if _kind_of(feature) in {"Polygon", "MultiPolygon"}]
     others = [feature for feature in features if _kind_of(feature) not in {"Polygon", "MultiPolygon", None}]
@@ -38,17 +36,17 @@ def read_drafts(content: bytes) -> tuple[FieldDraft, ...]:
         msg = "there is no polygon in it" + (f", only {', '.join(found)}" if found else "")
         raise BoundaryError(msg)
     ours = [feature for feature in others if ROLE in _properties(feature)]
-    drafts = [_draft(feature, place) for feature in fields]
+    drafts = [_draft(feature, change) for feature in fields]
     if len(drafts) == 1 and ours:
-        drafts = [_with_extras(drafts[0], ours, place)]
+        drafts = [_with_extras(drafts[0], ours, change)]
     ignored = len(others) - (len(ours) if len(drafts) == 1 else 0)
     if ignored:
         remark = f"{ignored} points and lines in the file are left out"
-        drafts = [_remarked(draft, remark) for draft in drafts]
+        drafts = [draft.remarked(remark) for draft in drafts]
     return tuple(drafts)
 
 
-def written_field(document: FieldDocument) -> bytes:
+def written(document: FieldDocument) -> bytes:
     """The field as a FeatureCollection: the boundary, and if there are any its guidance lines and its entrance."""
     features = [
         _feature("boundary", document.boundary.model_dump(), {"name": document.name, "notes": document.notes}),
@@ -109,31 +107,22 @@ def _features(root: dict[str, Any]) -> list[dict[str, Any]]:
     raise BoundaryError(msg)
 
 
-def _place_of(root: dict[str, Any]) -> Place:
-    """What turns a position of the file into WGS 84 degrees, from the ``crs`` member of 2008."""
+def _change_of(root: dict[str, Any], options: ReadOptions) -> Change:
+    """What turns positions of the file into WGS 84 degrees, from the ``crs`` member of 2008."""
     crs = root.get("crs")
     if crs is None:
-        return lambda x, y: (x, y)
+        return lambda positions: positions
     properties = crs.get("properties") if isinstance(crs, dict) else None
     name = properties.get("name") if isinstance(properties, dict) else None
     if not isinstance(name, str):
         msg = "its crs member does not name a coordinate system"
         raise BoundaryError(msg)
     try:
-        system = CRS.from_user_input(name)
-        transformer = Transformer.from_crs(system, "EPSG:4326", always_xy=True, accuracy=ACCURACY, allow_ballpark=False)
-    except CRSError as error:
-        msg = f"its coordinate system '{name}' is not known"
+        system = crs_named(name)
+    except ValueError as error:
+        msg = f"its coordinate system '{name[:60]}' is not known"
         raise BoundaryError(msg) from error
-    except ProjError as error:
-        msg = f"its coordinate system '{name}' cannot be turned into WGS 84 within {ACCURACY:g} m here"
-        raise BoundaryError(msg) from error
-
-    def place(x: float, y: float) -> Position:
-        longitude, latitude = transformer.transform(x, y)
-        return float(longitude), float(latitude)
-
-    return place
+    return changed_from(system, options)
 
 
 # --- reading: one feature --------------------------------------------------------------------------------------------
@@ -150,7 +139,7 @@ def _properties(feature: dict[str, Any]) -> dict[str, Any]:
     return properties if isinstance(properties, dict) else {}
 
 
-def _draft(feature: dict[str, Any], place: Place) -> FieldDraft:
+def _draft(feature: dict[str, Any], change: Change) -> FieldDraft:
     coordinates = feature["geometry"].get("coordinates")
     polygons = coordinates if _kind_of(feature) == "MultiPolygon" else [coordinates]
     if not isinstance(polygons, list) or not polygons:
@@ -159,7 +148,7 @@ def _draft(feature: dict[str, Any], place: Place) -> FieldDraft:
     notes = _properties(feature).get("notes")
     return FieldDraft(
         name=_name_of(feature),
-        parts=tuple(_polygon(polygon, place) for polygon in polygons),
+        parts=tuple(_polygon(polygon, change) for polygon in polygons),
         notes=notes if isinstance(notes, str) and ROLE in _properties(feature) else "",
     )
 
@@ -174,26 +163,26 @@ def _name_of(feature: dict[str, Any]) -> str | None:
     return None
 
 
-def _polygon(rings: Any, place: Place) -> PolygonRings:
+def _polygon(rings: Any, change: Change) -> PolygonRings:
     if not isinstance(rings, list) or not rings:
         msg = "a polygon in it has no rings"
         raise BoundaryError(msg)
-    return [_positions(ring, place) for ring in rings]
+    return [_positions(ring, change) for ring in rings]
 
 
-def _positions(ring: Any, place: Place) -> list[Position]:
+def _positions(ring: Any, change: Change) -> list[Position]:
     if not isinstance(ring, list) or not ring:
         msg = "a ring in it has no corners"
         raise BoundaryError(msg)
-    return [_position(corner, place) for corner in ring]
+    return change([_numbers(corner) for corner in ring])
 
 
-def _position(corner: Any, place: Place) -> Position:
+def _numbers(corner: Any) -> Position:
     if not isinstance(corner, list) or len(corner) < 2 or not all(_is_number(value) for value in corner[:2]):
         msg = f"a corner in it is {str(corner)[:40]!r}, not two numbers"
         raise BoundaryError(msg)
     try:
-        return place(float(corner[0]), float(corner[1]))
+        return float(corner[0]), float(corner[1])
     except OverflowError as error:
         msg = "a corner in it is not a number of sensible size"
         raise BoundaryError(msg) from error
@@ -206,20 +195,20 @@ def _is_number(value: Any) -> bool:
 # --- reading: what this program wrote beside the boundary ------------------------------------------------------------
 
 
-def _with_extras(draft: FieldDraft, features: Sequence[dict[str, Any]], place: Place) -> FieldDraft:
+def _with_extras(draft: FieldDraft, features: Sequence[dict[str, Any]], change: Change) -> FieldDraft:
     lines: list[GuidanceLineDocument] = []
     entrance: Position | None = None
     for feature in features:
         coordinates = feature["geometry"].get("coordinates")
         match _properties(feature)[ROLE]:
             case "line":
-                lines.append(_line(feature, _positions(coordinates, place)))
+                lines.append(_line(feature, _positions(coordinates, change)))
             case "entrance":
-                entrance = _position(coordinates, place)
+                (entrance,) = change([_numbers(coordinates)])
             case other:
                 msg = f"a feature in it has the unknown part '{other}' of a field"
                 raise BoundaryError(msg)
-    return FieldDraft(draft.name, draft.parts, tuple(lines), entrance, draft.notes, draft.remarks)
+    return draft.with_extras(lines, entrance)
 
 
 def _line(feature: dict[str, Any], positions: list[Position]) -> GuidanceLineDocument:
@@ -235,7 +224,3 @@ def _line(feature: dict[str, Any], positions: list[Position]) -> GuidanceLineDoc
     except ValidationError as error:
         msg = f"a guidance line in it cannot be read: {error.errors()[0]['msg']}"
         raise BoundaryError(msg) from error
-
-
-def _remarked(draft: FieldDraft, remark: str) -> FieldDraft:
-    return FieldDraft(draft.name, draft.parts, draft.lines, draft.entrance, draft.notes, (*draft.remarks, remark))

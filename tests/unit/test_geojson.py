@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 from pyproj import Geod, Transformer
 from support.documents import field_named, rectangle, ring_of
 
-from guidance_app import exchange
 from guidance_app.boundary import BoundaryError, frame_of
 from guidance_app.documents import FieldDocument, GuidanceLineDocument, LineGeometry
-from guidance_app.exchange import READERS, WRITERS, ExchangeError, checked_fields, read_field, write_field
-from guidance_app.exchange.geojson import read_drafts, written_field
+from guidance_app.exchange import ExchangeError, ReadOptions, checked_fields, read_field, write_field
+from guidance_app.exchange.files import files_in
+from guidance_app.exchange.geojson import read, written
 from guidance_app.store import StoreError, field_from_file
 from guidance_app.store.migrations import encoded
 
@@ -26,7 +26,7 @@ AREA_TOLERANCE = 1e-4
 """0.01 %."""
 
 RING = [list(corner) for corner in ring_of(rectangle(200, 100))]
-WRITTEN = written_field(field_named("F"))
+WRITTEN = written(field_named("F"))
 POLYGON = {"type": "Polygon", "coordinates": [RING]}
 
 
@@ -104,12 +104,13 @@ def test_several_fields_are_several_and_one_is_chosen_by_name(tmp_path: Path) ->
         read_field(path, "C")
 
 
-def test_the_largest_part_of_a_multipolygon_is_taken_with_a_remark(tmp_path: Path) -> None:
+def test_the_parts_of_a_multipolygon_become_fields_with_a_remark(tmp_path: Path) -> None:
     small = [list(corner) for corner in ring_of(rectangle(30, 30, (500, 0)))]
     parts = {"type": "MultiPolygon", "coordinates": [[small], [RING]]}
-    (field,) = checked_fields(write(tmp_path, feature(parts)))
-    assert field.area == pytest.approx(20_000, rel=1e-6)
-    assert "2 parts" in field.remarks[0]
+    first, second = checked_fields(write(tmp_path, feature(parts, name="A")))
+    assert (first.name, second.name) == ("A (1)", "A (2)")
+    assert second.area == pytest.approx(20_000, rel=1e-6)
+    assert "2 parts" in first.remarks[0]
     one = {"type": "MultiPolygon", "coordinates": [[RING]]}
     assert checked_fields(write(tmp_path, feature(one)))[0].remarks == ()
 
@@ -200,7 +201,7 @@ def test_missing_files_folders_and_strange_endings_are_one_sentence(tmp_path: Pa
     with pytest.raises(ExchangeError, match="cannot be read: No such file"):
         read_field(tmp_path / "no.geojson")
     (tmp_path / "dir.geojson").mkdir()
-    with pytest.raises(ExchangeError, match="cannot be read"):
+    with pytest.raises(ExchangeError, match="it holds no file at all"):
         read_field(tmp_path / "dir.geojson")
     with pytest.raises(ExchangeError, match=r"fields are read from .*\.geojson"):
         read_field(write(tmp_path, POLYGON, "field.docx"))
@@ -223,14 +224,7 @@ def test_damaged_bytes_give_drafts_or_a_boundary_error(noise: bytes, place: int)
     cut = place % len(WRITTEN)
     damaged = WRITTEN[:cut] + noise + WRITTEN[cut + len(noise) :]
     with contextlib.suppress(BoundaryError):
-        assert read_drafts(damaged)
-
-
-def test_each_format_is_in_the_tables() -> None:
-    folder = Path(exchange.__file__).parent
-    formats = {path.stem for path in folder.glob("*.py")} - {"__init__"}
-    known = {reader.__module__.rsplit(".", 1)[1] for reader in (*READERS.values(), *WRITERS.values())}
-    assert known == formats
+        assert read(files_in(damaged, "f.geojson"), ReadOptions())
 
 
 def test_a_field_file_may_be_our_own_document_or_geojson(tmp_path: Path) -> None:
