@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path, PurePosixPath
 from types import MappingProxyType
 
-from guidance_app.boundary import BoundaryError, FieldDraft, checked_field
+from guidance_app.boundary import BoundaryError, CheckedField, FieldDraft, checked_field
 from guidance_app.documents import FieldDocument
 from guidance_app.exchange import (
     agopengps,
@@ -113,9 +113,9 @@ def read_fields(
         raise ExchangeError(msg) from error
 
 
-def checked_fields(path: Path) -> tuple[ImportedField, ...]:
+def checked_fields(path: Path) -> tuple[CheckedField, ...]:
     """Every field in the file, with area, perimeter and remarks for the preview. Raises ``ExchangeError``."""
-    return read_fields(path)
+    return tuple(CheckedField(one.document, one.area, one.perimeter, one.remarks) for one in read_fields(path))
 
 
 def read_field(path: Path, name: str | None = None) -> FieldDocument:
