@@ -108,7 +108,7 @@ def test_the_parts_of_a_multipolygon_become_fields_with_a_remark(tmp_path: Path)
     small = [list(corner) for corner in ring_of(rectangle(30, 30, (500, 0)))]
     parts = {"type": "MultiPolygon", "coordinates": [[small], [RING]]}
     first, second = checked_fields(write(tmp_path, feature(parts, name="A")))
-    assert (first.name, second.name) == ("A (1)", "A (2)")
+    assert (first.document.name, second.document.name) == ("A (1)", "A (2)")
     assert second.area == pytest.approx(20_000, rel=1e-6)
     assert "2 parts" in first.remarks[0]
     one = {"type": "MultiPolygon", "coordinates": [[RING]]}
