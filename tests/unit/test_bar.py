@@ -354,7 +354,7 @@ def test_the_style_tells_what_seldom_changes() -> None:
 
 @pytest.mark.parametrize(
     ("language", "number", "name", "ahead"),
-    [("ja", "1.24 m", "行程 3/24 (ライン +2)", "1.5 秒後"), ("es", "1,24 m", "pasada 3 de 24 (línea +2)", "EN 1,5 s")],
+    [("ja", "1.24 m", "行程 3/24 (ライン +2)", "1.5 秒後"), ("es", "1,24 m", "pasada 3/24 (línea +2)", "EN 1,5 s")],
 )
 def test_the_bar_speaks_the_drivers_language(language: str, number: str, name: str, ahead: str) -> None:
     settings = SETTINGS.model_copy(update={"language": language})
