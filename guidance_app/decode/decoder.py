@@ -27,6 +27,7 @@ from guidance_app.decode.plausibility import Place, Plausibility
 from guidance_app.decode.sentence import DecodeError, Sentence
 from guidance_app.decode.sky import Sky
 from guidance_app.decode.usual import Usual
+from guidance_app.language import message
 from guidance_app.model import Attitude, Chunk, Fix, FixQuality, NoFix, Observation, Rejected, Satellite
 
 __all__ = ["Decoder"]
@@ -294,7 +295,7 @@ class Decoder:
         self._closed_time = epoch.time
         position = epoch.position()
         if epoch.says_no_fix():
-            out.append(NoFix(epoch.arrival, epoch.t, "no fix"))
+            out.append(NoFix(epoch.arrival, epoch.t, message("no fix")))
             if epoch.t is not None:
                 self._clock.believe(epoch.t)
         elif position is not None and self._close_with(epoch, position, out):

@@ -185,7 +185,12 @@ class Engine:
 
     def failed(self, arrival: float, reason: str) -> Snapshot:
         """The snapshot that says that the engine itself has failed, with nothing to steer by."""
-        link = replace(self._snapshot.link, status=LinkStatus.DOWN, since=arrival, reason=f"internal error: {reason}")
+        link = replace(
+            self._snapshot.link,
+            status=LinkStatus.DOWN,
+            since=arrival,
+            reason=sentence("internal error: {reason}", reason=reason),
+        )
         return self._publish(arrival, {"link": link, **NO_POSE})
 
     def _publish(self, arrival: float, changes: Changes) -> Snapshot:

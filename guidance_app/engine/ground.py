@@ -13,6 +13,7 @@ from guidance_app.guidance.itinerary import passes_of
 from guidance_app.guidance.planning import PlanError, plan_operation, request_from_documents
 from guidance_app.guidance.replanning import Standing, replan
 from guidance_app.guidance.request import PlanRequest
+from guidance_app.language import sentence
 from guidance_app.model import FloatArray, Pass, Plan
 
 __all__ = ["Ground", "ground_beside", "ground_of", "mainland_of", "rest_of", "shown_beside"]
@@ -54,7 +55,12 @@ def ground_of(job: Job) -> Ground | None:
         request = request_from_documents(job.tractor, job.implement, job.operation, _entrance(frame, job.field))
         plan = plan_operation(polygon, request)
     except PlanError as error:
-        return Ground(frame, polygon, rings, notices=(f"No plan: {error}. Guiding along the first straight stretch.",))
+        return Ground(
+            frame,
+            polygon,
+            rings,
+            notices=(sentence("No plan: {reason}. Guiding along the first straight stretch.", reason=str(error)),),
+        )
     return Ground(frame, polygon, rings, plan, request, passes=passes_of(plan), notices=plan.warnings)
 
 

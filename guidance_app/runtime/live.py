@@ -14,6 +14,7 @@ from dataclasses import replace
 from guidance_app.documents import Job
 from guidance_app.engine import Engine
 from guidance_app.estimation.filter import FilterSettings
+from guidance_app.language import sentence
 from guidance_app.model import RECEIVER, Command, Commanded, Event, Snapshot, SourceDown
 from guidance_app.recording import RecordedDrive
 from guidance_app.runtime.recorder import Recorder
@@ -29,7 +30,7 @@ log = logging.getLogger(__name__)
 IDLE = 0.5
 """Without bytes the engine still looks at the time this often (s)."""
 MICROSECOND_DIGITS = 6
-INTERRUPTED = "the program was stopped here"
+INTERRUPTED = sentence("the program was stopped here")
 TOLD_EVERY = 500
 """Events of a drive that is gone on with between two words about progress."""
 
@@ -134,7 +135,12 @@ class LiveSession:
                 self._events.put(later)
         except Exception as error:
             log.exception("the source failed")
-            self._events.put(SourceDown(self.now(), f"{self._source.description} failed: {error}"))
+            self._events.put(
+                SourceDown(
+                    self.now(),
+                    sentence("{description} failed: {reason}", description=self._source.description, reason=str(error)),
+                )
+            )
 
     def _run(self) -> None:
         while not self._stop.is_set():

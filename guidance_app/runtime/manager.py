@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from guidance_app.documents import Implement, Job, Receiver, Tractor
+from guidance_app.language import sentence
 from guidance_app.model import Chunk, Command, Snapshot, SourceDown, SourceUp
 from guidance_app.runtime.live import LiveSession
 from guidance_app.runtime.session import Hearer, Session
@@ -23,7 +24,7 @@ __all__ = ["SessionManager", "idle_job", "idle_session"]
 
 log = logging.getLogger(__name__)
 
-NO_SOURCE = "no receiver in use: start a drive"
+NO_SOURCE = sentence("no receiver in use: start a drive")
 
 
 class _Unplugged:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from guidance_app.documents import Job
 from guidance_app.estimation.filter import FilterSettings
+from guidance_app.language import sentence
 from guidance_app.runtime.live import LiveSession
 from guidance_app.runtime.recorder import Recorder, new_recording
 from guidance_app.sources import Source
@@ -27,7 +28,7 @@ def recorded_session(
     try:
         recorder = new_recording(data, job, source.description, filter_name, settings, notices)
     except StoreError as error:
-        notices = (*notices, f"This drive is not recorded: {error}.")
+        notices = (*notices, sentence("This drive is not recorded: {reason}.", reason=str(error)))
     return LiveSession(job, source, filter_name, settings, recorder=recorder, notices=notices)
 
 

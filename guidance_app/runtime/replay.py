@@ -16,6 +16,7 @@ from pathlib import Path
 
 from guidance_app.documents import Job
 from guidance_app.estimation.filter import FilterSettings
+from guidance_app.language import sentence
 from guidance_app.model import Command, Commanded, Event, SetLookAhead, Snapshot, SourceDown
 from guidance_app.recording import RecordedDrive
 from guidance_app.runtime.checkpoints import Checkpoint, Checkpoints, PassStart, PassStarts
@@ -282,7 +283,13 @@ class ReplaySession:
     def _note_the_end(self) -> None:
         if self._pacer.ended and not self._ended:
             self._ended = True
-            self._step(SourceDown(self._pacer.duration, f"{self._timeline.description} has ended", ended=True))
+            self._step(
+                SourceDown(
+                    self._pacer.duration,
+                    sentence("{description} has ended", description=self._timeline.description),
+                    ended=True,
+                )
+            )
             self._publisher.tell()
 
     def _jump(self, seek: Seek) -> None:

@@ -11,6 +11,7 @@ import threading
 from collections.abc import Callable, Iterator, Mapping
 from typing import Protocol, cast
 
+from guidance_app.language import sentence
 from guidance_app.model import ATTITUDE, RECEIVER, Chunk, SourceDown, SourceUp
 
 __all__ = ["SOURCES", "Opener", "Source", "SourceError", "SourceEvent", "open_source"]
@@ -67,7 +68,11 @@ def _open_one(uri: str) -> Source:
     scheme = uri.partition(":")[0].lower()
     if ":" not in uri or scheme not in SOURCES:
         known = ", ".join(f"{name}:" for name in SOURCES)
-        msg = f"'{uri}' is not a source that is known here: write it with one of {known} in front, as in file:run.nmea."
+        msg = sentence(
+            "'{uri}' is not a source that is known here: write it with one of {known} in front, as in file:run.nmea.",
+            uri=uri,
+            known=known,
+        )
         raise SourceError(msg)
     source = cast("Opener", _named(SOURCES[scheme]))(uri)
     if source.live:

@@ -28,6 +28,7 @@ from guidance_app.decode.decoder import Decoder
 from guidance_app.decode.framing import MAX_LENGTH, Framer
 from guidance_app.decode.nmea import has_checksum, read_line
 from guidance_app.decode.sentence import DecodeError
+from guidance_app.language import sentence
 from guidance_app.model import Chunk, Fix, FloatArray, SourceDown, SourceUp
 from guidance_app.sources import SourceError, SourceEvent
 
@@ -115,7 +116,7 @@ class FileLog:
             if stop.is_set():
                 return
             yield chunk
-        yield SourceDown(self.duration, f"the end of {self.description}", ended=True)
+        yield SourceDown(self.duration, sentence("the end of {description}", description=self.description), ended=True)
 
 
 def load_log(path: Path) -> FileLog:
@@ -134,7 +135,7 @@ def open_file(uri: str) -> FileLog:
     if place.startswith("//"):
         place = unquote(place[2:])
     if not place:
-        msg = "file: names no log: write the file's path behind it, as in file:run.nmea."
+        msg = sentence("file: names no log: write the file's path behind it, as in file:run.nmea.")
         raise SourceError(msg)
     return load_log(Path(place))
 
@@ -142,34 +143,38 @@ def open_file(uri: str) -> FileLog:
 def _read(path: Path) -> bytes:
     try:
         if path.is_dir():
-            raise SourceError(f"{path} is a folder: name the log inside it.")
+            raise SourceError(sentence("{path} is a folder: name the log inside it.", path=path))
         if not path.exists():
-            raise SourceError(f"There is no file {path}: check the spelling and the folder.")
+            raise SourceError(sentence("There is no file {path}: check the spelling and the folder.", path=path))
         if not path.is_file():
-            raise SourceError(f"{path} is not an ordinary file: name a recorded log.")
+            raise SourceError(sentence("{path} is not an ordinary file: name a recorded log.", path=path))
         if path.stat().st_size > MAX_BYTES:
-            raise SourceError(f"{path} is larger than 1 GB: cut it into parts of a day.")
+            raise SourceError(sentence("{path} is larger than 1 GB: cut it into parts of a day.", path=path))
         return path.read_bytes()
     except PermissionError:
-        raise SourceError(f"{path} may not be read: allow it, or copy it to a folder of your own.") from None
+        raise SourceError(
+            sentence("{path} may not be read: allow it, or copy it to a folder of your own.", path=path)
+        ) from None
     except (OSError, ValueError) as error:
-        raise SourceError(f"{path} cannot be read: {error}.") from None
+        raise SourceError(sentence("{path} cannot be read: {reason}.", path=path, reason=str(error))) from None
 
 
 def _unpacked(path: Path, data: bytes) -> bytes:
     if not data:
-        raise SourceError(f"{path} is empty: record it again, or choose another log.")
+        raise SourceError(sentence("{path} is empty: record it again, or choose another log.", path=path))
     if not data.startswith(b"\x1f\x8b"):
         return data
     try:
         with gzip.open(path) as archive:
             unpacked = archive.read(MAX_BYTES + 1)
     except (OSError, EOFError, zlib.error):
-        raise SourceError(f"{path} is a damaged gzip archive: fetch it again, or unpack what is left of it.") from None
+        raise SourceError(
+            sentence("{path} is a damaged gzip archive: fetch it again, or unpack what is left of it.", path=path)
+        ) from None
     if len(unpacked) > MAX_BYTES:
-        raise SourceError(f"{path} unpacks to more than 1 GB: cut it into parts of a day.")
+        raise SourceError(sentence("{path} unpacks to more than 1 GB: cut it into parts of a day.", path=path))
     if not unpacked:
-        raise SourceError(f"{path} is an empty archive: record it again, or choose another log.")
+        raise SourceError(sentence("{path} is an empty archive: record it again, or choose another log.", path=path))
     return unpacked
 
 
@@ -202,11 +207,18 @@ def _refuse_other_files(path: Path, data: bytes) -> None:
             damaged += _match_common_name(line) is not None
     if damaged:
         raise SourceError(
-            f"{path} is a receiver's log in which not one sentence is whole: it was damaged on the way; copy it again."
+            sentence(
+                "{path} is a receiver's log in which not one sentence is whole: it was damaged on the way; "
+                "copy it again.",
+                path=path,
+            )
         )
     raise SourceError(
-        f"{path} is not a receiver's log: it holds no NMEA sentence ($GPGGA,... and the like); choose the file that"
-        " the receiver's output was saved in."
+        sentence(
+            "{path} is not a receiver's log: it holds no NMEA sentence ($GPGGA,... and the like); choose "
+            "the file that the receiver's output was saved in.",
+            path=path,
+        )
     )
 
 

@@ -21,9 +21,17 @@ GREETING_BYTES = 2000
 
 def open_gpsd(uri: str) -> Kept:
     """The source that ``gpsd://localhost`` or ``gpsd://192.168.1.20:2947`` names. Raises ``SourceError``."""
-    rule = f"'{uri}' needs the machine on which gpsd runs: write it as gpsd://localhost or gpsd://192.168.1.20:{PORT}."
+    rule = sentence(
+        "'{uri}' needs the machine on which gpsd runs: write it as gpsd://localhost or gpsd://192.168.1.20:{port}.",
+        uri=uri,
+        port=PORT,
+    )
     host, port = host_and_port(uri, rule, PORT)
-    what = f"gpsd on {host}" if port == PORT else f"gpsd on {host}:{port}"
+    what = (
+        sentence("gpsd on {host}", host=host)
+        if port == PORT
+        else sentence("gpsd on {host}:{port}", host=host, port=port)
+    )
 
     def connect(stop: threading.Event) -> _Watching:
         connection = _Watching(SocketConnection(dial(host, port, stop), what))

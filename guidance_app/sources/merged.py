@@ -10,6 +10,7 @@ import threading
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from guidance_app.language import sentence
 from guidance_app.model import RECEIVER, SourceDown
 from guidance_app.sources import Source, SourceEvent
 
@@ -77,5 +78,11 @@ def _read(link: str, source: Source, stop: threading.Event, given: "queue.Simple
             given.put(event if event.link == link else replace(event, link=link))
     except Exception as error:
         log.exception("the source of the %s failed", link)
-        given.put(SourceDown(last, f"{source.description} failed: {error}", link))
+        given.put(
+            SourceDown(
+                last,
+                sentence("{description} failed: {reason}", description=source.description, reason=str(error)),
+                link,
+            )
+        )
     given.put(None)

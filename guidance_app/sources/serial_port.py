@@ -88,9 +88,10 @@ class SerialSettings:
 
 def open_serial(uri: str) -> Kept:
     """The source that ``serial:///dev/ttyUSB0?baud=115200`` or ``serial://COM3`` names. Raises ``SourceError``."""
-    rule = (
-        f"'{uri}' names no serial port: write it as serial:///dev/ttyUSB0, or serial://COM3 on Windows; the baud rate"
-        " may follow, as in serial:///dev/ttyUSB0?baud=115200."
+    rule = sentence(
+        "'{uri}' names no serial port: write it as serial:///dev/ttyUSB0, or serial://COM3 on "
+        "Windows; the baud rate may follow, as in serial:///dev/ttyUSB0?baud=115200.",
+        uri=uri,
     )
     parts = split(uri, rule)
     path = unquote(parts.netloc + parts.path)
@@ -103,14 +104,22 @@ def _baud(uri: str, parts: SplitResult) -> int | None:
     options = dict(parse_qsl(parts.query, keep_blank_values=True))
     text = options.pop("baud", "auto")
     if options:
-        msg = f"'{uri}': {', '.join(options)} is no option of a serial port; there is only baud, as in ?baud=115200."
+        msg = sentence(
+            "'{uri}': {names} is no option of a serial port; there is only baud, as in ?baud=115200.",
+            uri=uri,
+            names=", ".join(options),
+        )
         raise SourceError(msg)
     if text == "auto":
         return None
     if not text.isdecimal() or not LOWEST_BAUD <= int(text) <= HIGHEST_BAUD:
-        msg = (
-            f"'{uri}': baud is {text!r}, but it is a number from {LOWEST_BAUD} to {HIGHEST_BAUD}, or auto to have it"
-            " found."
+        msg = sentence(
+            "'{uri}': baud is {text!r}, but it is a number from {lowest_baud} to {highest_baud}, or auto "
+            "to have it found.",
+            uri=uri,
+            text=text,
+            lowest_baud=LOWEST_BAUD,
+            highest_baud=HIGHEST_BAUD,
         )
         raise SourceError(msg)
     return int(text)
@@ -170,8 +179,8 @@ class _SerialLink:
     def what(self) -> str:
         """The port and its rate, or that the rate is looked for."""
         if self._hunt is not None and not self._hunt.found:
-            return f"{self._path} (looking for its baud rate)"
-        return f"{self._path} at {self._rate} baud"
+            return sentence("{path} (looking for its baud rate)", path=self._path)
+        return sentence("{path} at {rate} baud", path=self._path, rate=self._rate)
 
     def read(self) -> bytes:
         """What has come. Raises ``LinkError`` when the device is gone."""

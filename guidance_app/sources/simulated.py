@@ -20,6 +20,7 @@ from guidance_app.guidance.planning import plan_operation, request_from_document
 from guidance_app.guidance.room import Room
 from guidance_app.guidance.turn import Leg
 from guidance_app.guidance.turns import Turner
+from guidance_app.language import sentence
 from guidance_app.model import Chunk, FloatArray, Segment, SegmentKind, SourceUp
 from guidance_app.simulation.driver import DriverSettings
 from guidance_app.simulation.job import JobSettings, simulated_epochs
@@ -87,21 +88,26 @@ def open_simulated(uri: str) -> SimulatedSource:
     _, _, rest = uri.partition(":")
     place, _, query = rest.partition("?")
     if place.strip("/"):
-        msg = f"'{uri}': after sim: come only options, as in sim:?rate=5&decimals=4"
+        msg = sentence("'{uri}': after sim: come only options, as in sim:?rate=5&decimals=4", uri=uri)
         raise SourceError(msg)
     chosen: dict[str, object] = {}
     for name, text in parse_qsl(query, keep_blank_values=True):
         option = _OPTIONS.get(name)
         if option is None:
-            msg = f"'{uri}': '{name}' is no option of sim:; there are {', '.join(_OPTIONS)}"
+            msg = sentence(
+                "'{uri}': '{name}' is no option of sim:; there are {names}",
+                uri=uri,
+                name=name,
+                names=", ".join(_OPTIONS),
+            )
             raise SourceError(msg)
         if option.member in chosen:
-            msg = f"'{uri}': '{name}' is given twice"
+            msg = sentence("'{uri}': '{name}' is given twice", uri=uri, name=name)
             raise SourceError(msg)
         try:
             chosen[option.member] = option.read(text)
         except ValueError as error:
-            msg = f"'{uri}': {name} is {text!r}, but {option.rule}"
+            msg = sentence("'{uri}': {name} is {text!r}, but {rule}", uri=uri, name=name, text=text, rule=option.rule)
             raise SourceError(msg) from error
     return SimulatedSource(SimulatedOptions(**chosen))  # type: ignore[arg-type] # each reader gives its member's type
 
@@ -121,7 +127,7 @@ class SampleDrive:
 def sample_drive(job: Job) -> SampleDrive:
     """The drive of the sample's documents, planned from the field's entrance as a session plans it."""
     if job.field is None or job.field.entrance is None:
-        msg = "the sample needs a field with an entrance"
+        msg = sentence("the sample needs a field with an entrance")
         raise SourceError(msg)
     frame = frame_of(job.field.boundary)
     polygon = polygon_in(frame, job.field.boundary)
@@ -135,7 +141,7 @@ def sample_drive(job: Job) -> SampleDrive:
     turner = Turner(Room(polygon, request.body), request)
     turn = turner.turns(_pose(end[-2], end[-1], end[-1]), _pose(begin[0], begin[1], begin[0]))[0]
     if turn is None:
-        msg = "the sample field has no room for the way back to its first pass"
+        msg = sentence("the sample field has no room for the way back to its first pass")
         raise SourceError(msg)
     return SampleDrive(frame, passes, tuple(_transfer(leg, passes[0].number) for leg in turn.legs))
 

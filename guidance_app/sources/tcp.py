@@ -2,6 +2,7 @@
 
 import threading
 
+from guidance_app.language import sentence
 from guidance_app.sources.addresses import SocketConnection, dial, host_and_port
 from guidance_app.sources.kept import Kept
 
@@ -10,7 +11,9 @@ __all__ = ["open_tcp"]
 
 def open_tcp(uri: str) -> Kept:
     """The source that ``tcp://192.168.1.20:2000`` names. Raises ``SourceError``."""
-    host, port = host_and_port(uri, f"'{uri}' needs a host and a port: write it as tcp://192.168.1.20:2000.")
+    host, port = host_and_port(
+        uri, sentence("'{uri}' needs a host and a port: write it as tcp://192.168.1.20:2000.", uri=uri)
+    )
     what = f"{host}:{port}"
 
     def connect(stop: threading.Event) -> SocketConnection:

@@ -26,12 +26,12 @@ def open_udp(uri: str) -> Kept:
 
     Raises ``SourceError``.
     """
-    rule = f"'{uri}' needs the port to listen at: write it as udp://:9999."
+    rule = sentence("'{uri}' needs the port to listen at: write it as udp://:9999.", uri=uri)
     parts = split(uri, rule)
     if parts.port is None or parts.path.strip("/") or parts.query or parts.username is not None:
         raise SourceError(rule)
     host, port = parts.hostname or "", parts.port
-    what = f"UDP port {port}"
+    what = sentence("UDP port {port}", port=port)
 
     def connect(stop: threading.Event) -> _Listener:
         del stop

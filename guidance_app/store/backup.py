@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import BinaryIO
 
+from guidance_app.language import sentence
 from guidance_app.store.files import (
     FolderLock,
     StoreError,
@@ -69,7 +70,7 @@ def write_backup(root: Path, target: BinaryIO) -> int:
                 archive.write(path, relative.as_posix())
                 count += 1
     except OSError as error:
-        msg = f"the backup of {root} cannot be written: {why(error)}"
+        msg = sentence("the backup of {root} cannot be written: {reason}", root=root, reason=why(error))
         raise StoreError(msg) from error
     return count
 
@@ -88,7 +89,7 @@ def restore(root: Path, source: BinaryIO, limits: Limits | None = None) -> Path 
             if isinstance(error, StoreError):
                 raise
             reason = why(error) if isinstance(error, OSError) else str(error)
-            msg = f"this is no backup that can be restored: {reason}"
+            msg = sentence("this is no backup that can be restored: {reason}", reason=reason)
             raise StoreError(msg) from error
         move(root / UNPACKING, root / READY)
         return _finish(root)
@@ -115,7 +116,11 @@ def _finish(root: Path) -> Path | None:
             (root / MOVING).rmdir()
             sync_folder(root)
     except OSError as error:
-        msg = f"the restore of {root} cannot be finished: {why(error)}; free some space and open it again"
+        msg = sentence(
+            "the restore of {root} cannot be finished: {reason}; free some space and open it again",
+            root=root,
+            reason=why(error),
+        )
         raise StoreError(msg) from error
     return before
 
@@ -139,7 +144,7 @@ def _unpack(root: Path, source: BinaryIO, limits: Limits) -> None:
     with zipfile.ZipFile(source) as archive:
         members = list(_checked_members(archive, limits))
         if not any(place.suffix == ".json" and place.parts[0] in DOCUMENTS for _, place in members):
-            msg = "this archive holds no document of a data folder"
+            msg = sentence("this archive holds no document of a data folder")
             raise StoreError(msg)
         left = limits.total_bytes
         for member, place in members:
@@ -154,21 +159,27 @@ def _checked_members(archive: zipfile.ZipFile, limits: Limits) -> Iterator[tuple
     """Every file of the archive with a place that lies inside, after a look at all names and sizes."""
     members = [each for each in archive.infolist() if not each.is_dir()]
     if len(members) > limits.files:
-        msg = f"this archive holds {len(members)} files; {limits.files} are possible"
+        msg = sentence(
+            "this archive holds {members} files; {files} are possible", members=len(members), files=limits.files
+        )
         raise StoreError(msg)
     if sum(each.file_size for each in members) > limits.total_bytes:
-        msg = f"this archive unpacks to more than {limits.total_bytes // MEGABYTE} MB"
+        msg = sentence("this archive unpacks to more than {total_bytes} MB", total_bytes=limits.total_bytes // MEGABYTE)
         raise StoreError(msg)
     seen: set[str] = set()
     for member in members:
         place = _safe_place(member)
         if str(place).casefold() in seen:
-            msg = f"this archive holds '{member.filename[:80]}' twice"
+            msg = sentence("this archive holds '{filename}' twice", filename=member.filename[:80])
             raise StoreError(msg)
         seen.add(str(place).casefold())
         packed = max(member.compress_size, 1)
         if member.file_size > MEGABYTE and member.file_size > limits.ratio * packed:
-            msg = f"'{member.filename[:80]}' unpacks to {member.file_size // packed} times its size; that is no backup"
+            msg = sentence(
+                "'{filename}' unpacks to {file_size} times its size; that is no backup",
+                filename=member.filename[:80],
+                file_size=member.file_size // packed,
+            )
             raise StoreError(msg)
         yield member, place
 
@@ -188,13 +199,13 @@ def _safe_place(member: zipfile.ZipInfo) -> PurePosixPath:
         or len(place.parts) > 12
     )
     if strange:
-        msg = f"this archive wants to write to '{name[:80]}', which is no place in a data folder"
+        msg = sentence("this archive wants to write to '{name}', which is no place in a data folder", name=name[:80])
         raise StoreError(msg)
     if stat.S_ISLNK(member.external_attr >> 16):
-        msg = f"'{name[:80]}' in this archive is a link; a backup has none"
+        msg = sentence("'{name}' in this archive is a link; a backup has none", name=name[:80])
         raise StoreError(msg)
     if member.flag_bits & 0x1 or member.compress_type not in {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}:
-        msg = f"'{name[:80]}' in this archive is locked or packed in a way that no backup is"
+        msg = sentence("'{name}' in this archive is locked or packed in a way that no backup is", name=name[:80])
         raise StoreError(msg)
     return place
 
@@ -207,7 +218,7 @@ def _unpack_one(archive: zipfile.ZipFile, member: zipfile.ZipInfo, target: Path,
         while block := packed.read(BLOCK):
             written += len(block)
             if written > limit:
-                msg = f"'{member.filename[:80]}' unpacks to more than is possible"
+                msg = sentence("'{filename}' unpacks to more than is possible", filename=member.filename[:80])
                 raise StoreError(msg)
             file.write(block)
         sync_file(file)

@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import TypeVar
 
 from guidance_app.documents import Document, FieldDocument, Implement, Operation, Receiver, Settings, Tractor
+from guidance_app.language import sentence
 from guidance_app.store.backup import finish_restore
 from guidance_app.store.files import FolderLock, StoreError, free_path, move, safe_stem, why, write_atomically
-from guidance_app.store.migrations import MIGRATIONS, Migration, encoded, kind_name
+from guidance_app.store.migrations import MIGRATIONS, Migration, encoded, kind_words
 from guidance_app.store.reading import PATTERNS, Problem, Reader, Stored, home_of, name_of
 
 __all__ = ["Named", "Removed", "Store", "StoreConflictError"]
@@ -77,11 +78,15 @@ class Store:
             return found[0]
         if found:
             fields = ", ".join(f"'{home_of(each.document)}'" for each in found)
-            msg = f"several fields have an operation '{name}' ({fields}); name the field too"
+            msg = sentence(
+                "several fields have an operation '{name}' ({fields}); name the field too", name=name, fields=fields
+            )
             raise StoreError(msg)
         known = ", ".join(f"'{each.document.name}'" for each in stored[:5]) + (", ..." if len(stored) > 5 else "")
-        msg = f"there is no {kind_name(kind)} '{name}' in {self.root}" + (f"; there is {known}" if known else "")
-        raise StoreError(msg)
+        values = {"kind": kind_words(kind), "name": name, "root": self.root}
+        if not known:
+            raise StoreError(sentence("there is no {kind} '{name}' in {root}", **values))
+        raise StoreError(sentence("there is no {kind} '{name}' in {root}; there is {known}", known=known, **values))
 
     def settings(self) -> Stored[Settings] | None:
         """The driver's settings; None when none are stored (the defaults hold then)."""
@@ -116,7 +121,9 @@ class Store:
             if document.name == name:
                 return stored.revision
             if self._current(document) is not None:
-                msg = f"the name '{document.name}' is in use by another {kind_name(kind)}"
+                msg = sentence(
+                    "the name '{name}' is in use by another {kind}", name=document.name, kind=kind_words(kind)
+                )
                 raise StoreError(msg)
             if isinstance(document, FieldDocument):
                 return self._rename_field(stored.path, document)
@@ -142,18 +149,19 @@ class Store:
         return None
 
     def _check_revision(self, document: Document, current: Stored[Document] | None, expected: str | None) -> None:
-        what = f"the {kind_name(type(document))} '{name_of(document)}'" if name_of(document) else "the settings"
+        name, kind = name_of(document), kind_words(type(document))
+        what = sentence("the {kind} '{name}'", kind=kind, name=name) if name else sentence("the settings")
         newer = self._reader.newer(type(document)).get(name_of(document))
         if current is None and newer is not None:
             raise StoreError(newer.sentence)
         if current is None and expected is not None:
-            msg = f"{what} was removed or renamed by another console"
+            msg = sentence("{what} was removed or renamed by another console", what=what)
             raise StoreConflictError(msg, None)
         if current is not None and expected is None:
-            msg = f"{what} exists already; choose another name, or open it and change it"
+            msg = sentence("{what} exists already; choose another name, or open it and change it", what=what)
             raise StoreConflictError(msg, current)
         if current is not None and current.revision != expected:
-            msg = f"{what} was changed by another console meanwhile; look at its version first"
+            msg = sentence("{what} was changed by another console meanwhile; look at its version first", what=what)
             raise StoreConflictError(msg, current)
 
     def _new_path(self, document: Named | Settings) -> Path:
@@ -203,7 +211,7 @@ class Store:
                 if (self.root / TRASH).exists():
                     shutil.rmtree(self.root / TRASH)
             except OSError as error:
-                msg = f"the trash in {self.root} cannot be emptied: {why(error)}"
+                msg = sentence("the trash in {root} cannot be emptied: {reason}", root=self.root, reason=why(error))
                 raise StoreError(msg) from error
 
     def archive(self, kind: type[N], name: str, field: str | None = None) -> Removed:
@@ -224,7 +232,11 @@ class Store:
         document = stored.document
         with self._lock.writing():
             if self._current(document) is not None:
-                msg = f"the name '{document.name}' is in use by another {kind_name(type(document))}; rename that first"
+                msg = sentence(
+                    "the name '{name}' is in use by another {kind}; rename that first",
+                    name=document.name,
+                    kind=kind_words(type(document)),
+                )
                 raise StoreError(msg)
             move(_whole(stored.path), _whole(self._new_path(document)))
 
@@ -252,5 +264,7 @@ def _renamed(document: N, name: str) -> N:
     try:
         return type(document).model_validate({**document.model_dump(), "name": name})
     except ValueError as error:
-        msg = f"'{name[:40]}' cannot be a name: 1 to 120 letters without control characters are needed"
+        msg = sentence(
+            "'{name}' cannot be a name: 1 to 120 letters without control characters are needed", name=name[:40]
+        )
         raise StoreError(msg) from error

@@ -17,6 +17,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
 
+from guidance_app.language import message, sentence
+
 __all__ = [
     "FolderLock",
     "StoreError",
@@ -39,15 +41,15 @@ MAX_STEM = 60
 MAX_DOCUMENT_BYTES = 50_000_000
 
 _REASONS = {
-    errno.ENOSPC: "the disk is full",
-    errno.EDQUOT: "the disk quota is used up",
-    errno.EROFS: "it is on a read-only disk",
-    errno.EACCES: "this user may not write there",
-    errno.EPERM: "this user may not write there",
-    errno.ENOTDIR: "a part of its path is a file, not a folder",
-    errno.EEXIST: "a file of that name is in the way",
-    errno.ENAMETOOLONG: "its path is too long",
-    errno.EIO: "the disk reports an error",
+    errno.ENOSPC: message("the disk is full"),
+    errno.EDQUOT: message("the disk quota is used up"),
+    errno.EROFS: message("it is on a read-only disk"),
+    errno.EACCES: message("this user may not write there"),
+    errno.EPERM: message("this user may not write there"),
+    errno.ENOTDIR: message("a part of its path is a file, not a folder"),
+    errno.EEXIST: message("a file of that name is in the way"),
+    errno.ENAMETOOLONG: message("its path is too long"),
+    errno.EIO: message("the disk reports an error"),
 }
 _RESERVED = frozenset(
     {"con", "prn", "aux", "nul", *(f"com{n}" for n in range(1, 10)), *(f"lpt{n}" for n in range(1, 10))}
@@ -61,7 +63,8 @@ class StoreError(Exception):
 
 def why(error: OSError) -> str:
     """The reason of a system error in words a driver understands."""
-    return _REASONS.get(error.errno or 0, error.strerror or str(error))
+    known = _REASONS.get(error.errno or 0)
+    return error.strerror or str(error) if known is None else sentence(known)
 
 
 def revision_of(content: bytes) -> str:
@@ -111,7 +114,7 @@ def write_atomically(path: Path, content: bytes) -> str:
             raise
         sync_folder(path.parent)
     except OSError as error:
-        msg = f"{path} cannot be written: {why(error)}"
+        msg = sentence("{path} cannot be written: {reason}", path=path, reason=why(error))
         raise StoreError(msg) from error
     return revision_of(content)
 
@@ -132,7 +135,9 @@ def move(source: Path, target: Path) -> None:
         sync_folder(target.parent)
         sync_folder(source.parent)
     except OSError as error:
-        msg = f"{source} cannot be moved to {target}: {why(error)}"
+        msg = sentence(
+            "{source} cannot be moved to {target}: {reason}", source=source, target=target, reason=why(error)
+        )
         raise StoreError(msg) from error
 
 
@@ -141,7 +146,11 @@ def read_bounded(path: Path) -> bytes:
     with path.open("rb") as file:
         content = file.read(MAX_DOCUMENT_BYTES + 1)
     if len(content) > MAX_DOCUMENT_BYTES:
-        msg = f"{path} is larger than {MAX_DOCUMENT_BYTES // 1_000_000} MB, which no document is"
+        msg = sentence(
+            "{path} is larger than {max_document_bytes} MB, which no document is",
+            path=path,
+            max_document_bytes=MAX_DOCUMENT_BYTES // 1_000_000,
+        )
         raise StoreError(msg)
     return content
 
@@ -181,13 +190,21 @@ class FolderLock:
             self.root.mkdir(parents=True, exist_ok=True)
             descriptor = os.open(self.root / LOCK_NAME, os.O_RDWR | os.O_CREAT, 0o644)
         except OSError as error:
-            msg = f"the data folder {self.root} cannot be written: {why(error)}; choose another folder"
+            msg = sentence(
+                "the data folder {root} cannot be written: {reason}; choose another folder",
+                root=self.root,
+                reason=why(error),
+            )
             raise StoreError(msg) from error
         try:
             _lock(descriptor)
         except OSError as error:
             os.close(descriptor)
-            msg = f"the data folder {self.root} cannot be locked: {why(error)}; choose another folder"
+            msg = sentence(
+                "the data folder {root} cannot be locked: {reason}; choose another folder",
+                root=self.root,
+                reason=why(error),
+            )
             raise StoreError(msg) from error
         return descriptor
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from platformdirs import user_data_dir
 
+from guidance_app.language import sentence
 from guidance_app.store.files import StoreError, read_bounded, why
 
 __all__ = ["SAMPLE_RECORDING", "copy_sample", "data_folder", "sample_folder", "simulated_notice"]
@@ -40,7 +41,11 @@ def data_folder(argument: Path | None, environment: Mapping[str, str]) -> Path:
         folder = _checkout_folder() or Path(user_data_dir("guidance-app", appauthor=False))
     folder = folder.expanduser().absolute()
     if folder.exists() and not folder.is_dir():
-        msg = f"the data folder {folder} is a file; name a folder with --data or {ENVIRONMENT_NAME}"
+        msg = sentence(
+            "the data folder {folder} is a file; name a folder with --data or {environment_name}",
+            folder=folder,
+            environment_name=ENVIRONMENT_NAME,
+        )
         raise StoreError(msg)
     return folder
 
@@ -50,7 +55,7 @@ def sample_folder() -> Path:
     for folder in (PACKAGE.parent / "fields", PACKAGE / "_fields"):
         if (folder / SAMPLE_RECORDING).is_dir():
             return folder
-    msg = f"the embedded sample is missing beside {PACKAGE}; install the program again"
+    msg = sentence("the embedded sample is missing beside {package}; install the program again", package=PACKAGE)
     raise StoreError(msg)
 
 
@@ -78,7 +83,7 @@ def copy_sample(to: Path) -> Path:
             else:
                 shutil.copyfile(source / part, target)
     except OSError as error:
-        msg = f"the sample cannot be copied to {to}: {why(error)}"
+        msg = sentence("the sample cannot be copied to {to}: {reason}", to=to, reason=why(error))
         raise StoreError(msg) from error
     return to
 

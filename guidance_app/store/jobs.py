@@ -6,6 +6,7 @@ from pathlib import Path
 from guidance_app.boundary import BoundaryError, checked_boundary
 from guidance_app.documents import FieldDocument, Implement, Job, Operation, Receiver, Settings, Tractor
 from guidance_app.exchange import ExchangeError, read_field
+from guidance_app.language import sentence
 from guidance_app.store.documents_folder import Store
 from guidance_app.store.files import StoreError, read_bounded, why
 from guidance_app.store.migrations import BrokenDocumentError, NewerDocumentError, decoded
@@ -34,14 +35,14 @@ def field_from_file(path: Path) -> FieldDocument:
     try:
         content = read_bounded(path)
     except OSError as error:
-        msg = f"{path} cannot be read: {why(error)}"
+        msg = sentence("{path} cannot be read: {reason}", path=path, reason=why(error))
         raise StoreError(msg) from error
     if path.suffix.lower() == ".json" and _is_own(content):
         try:
             document = decoded(content, FieldDocument)
             checked_boundary(document.boundary.coordinates)
         except (BrokenDocumentError, NewerDocumentError, BoundaryError) as error:
-            msg = f"{path} holds no usable field: {error}"
+            msg = sentence("{path} holds no usable field: {reason}", path=path, reason=str(error))
             raise StoreError(msg) from error
         return document
     try:

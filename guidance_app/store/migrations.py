@@ -14,9 +14,18 @@ from pydantic import ValidationError
 
 from guidance_app.boundary import BoundaryError, checked_boundary
 from guidance_app.documents import Document, FieldDocument
+from guidance_app.language import message, sentence
 from guidance_app.store.files import StoreError
 
-__all__ = ["MIGRATIONS", "BrokenDocumentError", "Migration", "NewerDocumentError", "decoded", "encoded", "kind_name"]
+__all__ = [
+    "MIGRATIONS",
+    "BrokenDocumentError",
+    "Migration",
+    "NewerDocumentError",
+    "decoded",
+    "encoded",
+    "kind_words",
+]
 
 D = TypeVar("D", bound=Document)
 
@@ -37,9 +46,24 @@ class NewerDocumentError(StoreError):
         self.name = name
 
 
-def kind_name(kind: type[Document]) -> str:
-    """The word for this kind of document, as its file says it."""
+KIND_WORDS: Mapping[str, str] = {
+    "field": message("field"),
+    "tractor": message("tractor"),
+    "implement": message("implement"),
+    "receiver": message("receiver"),
+    "operation": message("operation"),
+    "settings": message("settings"),
+}
+
+
+def _kind_name(kind: type[Document]) -> str:
+    """The name of this kind of document, as its file says it."""
     return str(kind.model_fields["kind"].default)
+
+
+def kind_words(kind: type[Document]) -> str:
+    """The word for this kind of document, for a sentence."""
+    return sentence(KIND_WORDS[_kind_name(kind)])
 
 
 def encoded(document: Document) -> bytes:
@@ -54,19 +78,25 @@ def decoded(content: bytes, kind: type[D], migrations: Mapping[tuple[str, int], 
     current = int(kind.model_fields["schema_version"].default)
     version = members.get("schema_version", current)
     if not isinstance(version, int) or isinstance(version, bool) or version < 0:
-        msg = f"its schema version is {version!r}, not a number"
+        msg = sentence("its schema version is {version!r}, not a number", version=version)
         raise BrokenDocumentError(msg)
     if version > current:
         name = members.get("name")
-        msg = (
-            f"it has schema version {version} and this program knows up to {current}:"
-            " it was written by a newer version of the program; update this one"
+        msg = sentence(
+            "it has schema version {version} and this program knows up to {current}: it was written by a "
+            "newer version of the program; update this one",
+            version=version,
+            current=current,
         )
         raise NewerDocumentError(msg, name if isinstance(name, str) else None)
     for step in range(version, current):
-        migration = migrations.get((kind_name(kind), step))
+        migration = migrations.get((_kind_name(kind), step))
         if migration is None:
-            msg = f"its schema version {version} is older than this program can lift to {current}"
+            msg = sentence(
+                "its schema version {version} is older than this program can lift to {current}",
+                version=version,
+                current=current,
+            )
             raise BrokenDocumentError(msg)
         members = {**migration(members), "schema_version": step + 1}
     try:
@@ -74,8 +104,8 @@ def decoded(content: bytes, kind: type[D], migrations: Mapping[tuple[str, int], 
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
-        msg = f"{where}: {first['msg']}" if where else first["msg"]
-        raise BrokenDocumentError(msg) from error
+        refused = f"{where}: {first['msg']}" if where else first["msg"]
+        raise BrokenDocumentError(refused) from error
     if isinstance(document, FieldDocument):
         _check_ground(document)
     return document
@@ -85,16 +115,16 @@ def _members(content: bytes) -> dict[str, Any]:
     try:
         members = json.loads(content, parse_constant=_no_constant)
     except (ValueError, RecursionError) as error:
-        msg = f"it is not JSON ({error})"
+        msg = sentence("it is not JSON ({reason})", reason=str(error))
         raise BrokenDocumentError(msg) from error
     if not isinstance(members, dict):
-        msg = "it is JSON, but not a document"
+        msg = sentence("it is JSON, but not a document")
         raise BrokenDocumentError(msg)
     return members
 
 
 def _no_constant(text: str) -> NoReturn:
-    msg = f"{text} stands where a number belongs"
+    msg = sentence("{text} stands where a number belongs", text=text)
     raise ValueError(msg)
 
 

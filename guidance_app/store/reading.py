@@ -11,6 +11,7 @@ from types import MappingProxyType
 from typing import Generic, TypeVar, cast
 
 from guidance_app.documents import Document, FieldDocument, Implement, Operation, Receiver, Settings, Tractor
+from guidance_app.language import sentence
 from guidance_app.store.files import FolderLock, StoreError, free_path, move, read_bounded, revision_of, why
 from guidance_app.store.migrations import BrokenDocumentError, Migration, NewerDocumentError, decoded
 
@@ -109,8 +110,13 @@ class Reader:
             key = (name_of(stored.document), home_of(stored.document))
             first = found.setdefault(key, stored)
             if first is not stored:
-                sentence = f"{path} holds another '{key[0]}' than {first.path}, which is used: rename or delete one"
-                self._problems[path] = Problem(path, sentence)
+                said = sentence(
+                    "{path} holds another '{key}' than {path_2}, which is used: rename or delete one",
+                    path=path,
+                    key=key[0],
+                    path_2=first.path,
+                )
+                self._problems[path] = Problem(path, said)
         return list(found.values())
 
     def _read(self, path: Path, kind: type[D]) -> Stored[D] | None:
@@ -120,13 +126,17 @@ class Reader:
         except FileNotFoundError:
             return None  # another console has just moved it
         except OSError as error:
-            self._problems[path] = Problem(path, f"{path} cannot be read: {why(error)}")
+            self._problems[path] = Problem(
+                path, sentence("{path} cannot be read: {reason}", path=path, reason=why(error))
+            )
             return None
         except BrokenDocumentError as error:
             self._set_aside(path, kind, str(error))
             return None
         except NewerDocumentError as error:
-            self._problems[path] = Problem(path, f"{path} is left out: {error}", newer=error.name or "")
+            self._problems[path] = Problem(
+                path, sentence("{path} is left out: {reason}", path=path, reason=str(error)), newer=error.name or ""
+            )
             return None
         except StoreError as error:
             self._problems[path] = Problem(path, str(error))
@@ -156,7 +166,7 @@ class Reader:
 
     def _set_aside(self, path: Path, kind: type[Document], reason: str) -> None:
         """Moves a broken file out of the way, unless another console has repaired it meanwhile."""
-        self._problems[path] = Problem(path, f"{path} cannot be read: {reason}")
+        self._problems[path] = Problem(path, sentence("{path} cannot be read: {reason}", path=path, reason=reason))
         with contextlib.suppress(StoreError, OSError), self._lock.writing():
             if self._is_broken(path, kind):
                 aside = free_path(path.parent, path.name + BROKEN)
@@ -168,10 +178,12 @@ class Reader:
         try:
             decoded(read_bounded(aside), kind, self._migrations)
         except StoreError as error:
-            return f"{aside} was set aside because it cannot be read: {error}"
+            return sentence("{aside} was set aside because it cannot be read: {reason}", aside=aside, reason=str(error))
         except OSError as error:
-            return f"{aside} was set aside and cannot be read: {why(error)}"
-        return f"{aside} was set aside, but can be read: take '{BROKEN}' off its name"
+            return sentence("{aside} was set aside and cannot be read: {reason}", aside=aside, reason=why(error))
+        return sentence(
+            "{aside} was set aside, but can be read: take '{broken}' off its name", aside=aside, broken=BROKEN
+        )
 
     def _is_broken(self, path: Path, kind: type[Document]) -> bool:
         try:
