@@ -1,6 +1,7 @@
 """``guidance-app run``: the console on a live source, recorded into the data folder."""
 
 import argparse
+import os
 from pathlib import Path
 
 from guidance_app.commands.options import (
@@ -15,9 +16,12 @@ from guidance_app.commands.options import (
 from guidance_app.commands.serving import serve
 from guidance_app.runtime import LiveSession, recorded_session, resumed_session
 from guidance_app.sources import SOURCES, Source, open_source
+from guidance_app.sources.ntrip import caster_from_uri
 from guidance_app.store.recordings_list import Resumable, resumable
 
 __all__ = ["add_parser", "run"]
+
+PASSWORD = "GUIDANCE_NTRIP_PASSWORD"  # noqa: S105 - the name of an environment variable
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -37,6 +41,12 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "--resume", action="store_true", help="go on with the last drive, which was cut off, with its documents"
     )
     parser.add_argument("--attitude", metavar="URI", help="an attitude sensor on a port of its own, in the same words")
+    parser.add_argument(
+        "--ntrip",
+        metavar="URI",
+        help="corrections for the receiver, from ntrip://user:password@host:2101/MOUNT; the password may stand in"
+        f" {PASSWORD} instead, where no other user of this machine sees it",
+    )
     add_job_options(parser)
     add_data_option(parser)
     add_console_options(parser)
@@ -47,14 +57,15 @@ def run(arguments: argparse.Namespace) -> int:
     """Drives until stopped."""
     data = chosen_data_folder(arguments)
     if arguments.source is None:
-        if arguments.attitude is not None:
-            msg = "--attitude is the sensor beside a receiver: name the receiver by --source"
+        if arguments.attitude is not None or arguments.ntrip is not None:
+            msg = "--attitude and --ntrip stand beside a receiver: name the receiver by --source"
             raise UseError(msg)
         if arguments.resume:
             msg = "--resume goes on with a drive: name its receiver by --source"
             raise UseError(msg)
         return serve(None, arguments, data, "nothing is driven yet: choose at the screen")
-    source = open_source(arguments.source, arguments.attitude)
+    caster = None if arguments.ntrip is None else caster_from_uri(arguments.ntrip, os.environ.get(PASSWORD))
+    source = open_source(arguments.source, arguments.attitude, caster)
     found = resumable(data)
     if arguments.resume:
         session = _resumed(found, source, data)

@@ -9,10 +9,13 @@ puts it in front of such a source. Opening raises ``SourceError`` with a sentenc
 import importlib
 import threading
 from collections.abc import Callable, Iterator, Mapping
-from typing import Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 from guidance_app.language import sentence
 from guidance_app.model import ATTITUDE, RECEIVER, Chunk, SourceDown, SourceUp
+
+if TYPE_CHECKING:
+    from guidance_app.sources.ntrip import Caster
 
 __all__ = ["SOURCES", "Opener", "Source", "SourceError", "SourceEvent", "open_source"]
 
@@ -51,17 +54,28 @@ SOURCES: Mapping[str, str] = {
 }
 """URI scheme -> opener, as ``module:function``. Named, not imported: a source's own libraries load when it is used."""
 
+TAKE_CORRECTIONS = frozenset({"serial", "tcp"})
+"""Schemes whose other end is the receiver itself, so that what is sent there reaches it."""
 
-def open_source(uri: str, attitude: str | None = None) -> Source:
-    """The source that ``uri`` names, keeping its time by itself; with that of an attitude sensor beside it, if any.
 
-    Raises ``SourceError``.
+def open_source(uri: str, attitude: str | None = None, caster: "Caster | None" = None) -> Source:
+    """The source that ``uri`` names, keeping its time by itself, with what stands beside it.
+
+    ``attitude`` names that of an attitude sensor, ``caster`` is where corrections for the receiver come from. Raises
+    ``SourceError``.
     """
     receiver = _open_one(uri)
-    if attitude is None:
+    if attitude is None and caster is None:
         return receiver
     merged = cast("Callable[[Mapping[str, Source]], Source]", _named("guidance_app.sources.merged:Merged"))
-    return merged({RECEIVER: receiver, ATTITUDE: _open_one(attitude)})
+    beside = {} if attitude is None else {ATTITUDE: _open_one(attitude)}
+    if caster is None:
+        return merged({RECEIVER: receiver, **beside})
+    if uri.partition(":")[0].lower() not in TAKE_CORRECTIONS:
+        msg = f"'{uri}' takes no corrections: a receiver at a serial:// or tcp:// address does."
+        raise SourceError(msg)
+    corrected = cast("Callable[[Source, Caster], Mapping[str, Source]]", _named("guidance_app.sources.ntrip:corrected"))
+    return merged({**corrected(receiver, caster), **beside})
 
 
 def _open_one(uri: str) -> Source:

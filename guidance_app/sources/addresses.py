@@ -104,8 +104,9 @@ def _broken(what: str, error: OSError) -> Sentence:
 class SocketConnection:
     """A connected socket as a link."""
 
-    def __init__(self, connection: socket.socket, what: str) -> None:
+    def __init__(self, connection: socket.socket, what: str, silent_s: float | None = None) -> None:
         self.what = what
+        self._silent_s = SILENT_S if silent_s is None else silent_s
         self._socket = connection
         self._heard = time.monotonic()
 
@@ -114,12 +115,12 @@ class SocketConnection:
         try:
             data = self._socket.recv(RECEIVED_AT_ONCE)
         except TimeoutError:
-            if time.monotonic() - self._heard > SILENT_S:
+            if time.monotonic() - self._heard > self._silent_s:
                 raise LinkError(
                     sentence(
                         "{what} has sent nothing for {seconds:.0f} s: connecting again",
                         what=self.what,
-                        seconds=SILENT_S,
+                        seconds=self._silent_s,
                     )
                 ) from None
             return b""

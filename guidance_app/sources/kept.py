@@ -63,7 +63,7 @@ class Kept:
     """A live source that opens its link again whenever it breaks."""
 
     live = True
-    duration = None
+    duration: float | None = None
 
     def __init__(self, description: str, connect: Connect, pauses: Pauses | None = None, link: str = RECEIVER) -> None:
         self.description = description

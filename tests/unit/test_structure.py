@@ -63,7 +63,7 @@ def _modules_in(package: str) -> set[str]:
     ("package", "shared"),
     [
         ("guidance_app.commands", {"options", "serving"}),
-        ("guidance_app.sources", {"addresses", "baud", "kept", "merged", "pacing", "ports"}),
+        ("guidance_app.sources", {"addresses", "baud", "kept", "merged", "ntrip", "pacing", "ports"}),
         ("guidance_app.estimation.filters", set()),
         ("guidance_app.guidance.patterns", set()),
         ("guidance_app.console.panels", set()),
