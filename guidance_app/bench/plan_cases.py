@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from guidance_app.guidance.costs import joins_of
 from guidance_app.guidance.planning import PlanRequest, plan_operation
@@ -91,10 +92,9 @@ def _mainland_worked(plan: Plan, width: float) -> float:
     return float(shapely.union_all(passes, grid_size=GRID).intersection(mainland).area / mainland.area)
 
 
-def _swath(segment: Segment, width: float) -> shapely.Polygon:
-    line = shapely.linearrings(segment.points) if segment.closed else shapely.linestrings(segment.points)
-    swath = shapely.buffer(line, width / 2, cap_style="flat")
-    assert isinstance(swath, shapely.Polygon)
+def _swath(segment: Segment, width: float) -> BaseGeometry:
+    swath = line_of(segment).buffer(width / 2, cap_style="flat")
+    assert isinstance(swath, BaseGeometry)
     return swath
 
 
