@@ -63,6 +63,20 @@ class Sketch:
             thickness_units="screen",
         )
 
+    def strokes(self, name: str, lines: Sequence[FloatArray], colour: Rgb = SKETCHED, pixels: float = 2.5) -> None:
+        """Many lines at once, each of shape (N, 2); none take them away."""
+        drawn = [segments(line, Z_SKETCH) for line in lines]
+        if not drawn:
+            self.remove(name)
+            return
+        self._nodes[name] = self._client.scene.add_line_segments(
+            f"{self._root}/{name}",
+            np.concatenate(drawn),
+            flat_source(colour),
+            thickness=pixels,
+            thickness_units="screen",
+        )
+
     def corners(self, name: str, points: FloatArray | Sequence[tuple[float, float]], colour: Rgb = SKETCHED) -> None:
         """A square of screen size on each of these points, shape (N, 2); none take them away."""
         spots = np.asarray(points, dtype=float).reshape(-1, 2)

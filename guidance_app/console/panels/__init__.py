@@ -4,8 +4,10 @@ from guidance_app.console.desk import Panel, Place
 from guidance_app.console.panels.fields import Fields
 from guidance_app.console.panels.info import Info
 from guidance_app.console.panels.menu import Menu
+from guidance_app.console.panels.plan import Plan
 from guidance_app.console.panels.receiver import Receiver
 from guidance_app.console.panels.replay import Replay
+from guidance_app.console.panels.rest import Rest
 from guidance_app.console.panels.start import Start
 from guidance_app.console.panels.summary import Summary
 from guidance_app.console.panels.views import Views
@@ -19,6 +21,7 @@ HEAD: dict[Place, type[Panel]] = {Place.DRIVE: Summary, Place.SETUP: Yard}
 
 PANELS: dict[str, type[Panel]] = {
     "work": Work,
+    "rest": Rest,
     "views": Views,
     "replay": Replay,
     "info": Info,
@@ -30,6 +33,7 @@ PANELS: dict[str, type[Panel]] = {
 SETUP_PANELS: dict[str, type[Panel]] = {
     "start": Start,
     "fields": Fields,
+    "plan": Plan,
     "receiver": Receiver,
 }
 """While setting up, in the order of the tabs."""
