@@ -28,6 +28,9 @@ __all__ = [
     "passes_within",
 ]
 
+LEAST_OFFSET = 1e-6
+"""Metres; nudges there and back leave less, and GEOS cannot offset a line by so little."""
+
 MOST_DRAWN = 2_000
 """Passes to either side of the guidance line that are ever drawn."""
 
@@ -206,7 +209,7 @@ def offset_line(points: FloatArray, metres: float, *, closed: bool = False, run_
     An open line is first prolonged straight by ``run_out`` at both ends, so that the inner side of a bend near an end
     need not eat the line up.
     """
-    if metres == 0:
+    if abs(metres) < LEAST_OFFSET:
         return points
     if closed:
         return _offset_ring(points, metres)

@@ -52,11 +52,13 @@ class Recorder:
         *,
         low_space: int = LOW_SPACE,
         flush_every: float = FLUSH_EVERY,
+        most_waiting: int = MOST_WAITING,
     ) -> None:
         self.path = folder.path
         self._folder = folder
         self._low_space = low_space
         self._flush_every = flush_every
+        self._most_waiting = most_waiting
         self._writer = LineWriter(past.lines.check)
         self._past = summary_of(past)
         self._events: queue.SimpleQueue[Event] = queue.SimpleQueue()
@@ -146,7 +148,7 @@ class Recorder:
             self._lengths.append((len(line), event.arrival))
             self._count += 1
             self._last = event.arrival
-            if len(self._waiting) > MOST_WAITING:
+            if len(self._waiting) > self._most_waiting:
                 self._given_up = True
 
     def _note_taken(self, taken: int) -> None:

@@ -15,5 +15,7 @@ def stepped(engine: Engine, event: Event) -> Snapshot:
     try:
         return engine.step(event)
     except Exception as error:
-        log.exception("the engine failed on %s", type(event).__name__)
-        return engine.failed(event.arrival, str(error))
+        before, failed = engine.snapshot.link.reason, engine.failed(event.arrival, str(error))
+        if failed.link.reason != before:  # the same failure ten times a second is told once
+            log.exception("the engine failed on %s", type(event).__name__)
+        return failed

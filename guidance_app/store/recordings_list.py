@@ -7,6 +7,7 @@ from pathlib import Path
 from guidance_app.recording import RecordedDrive
 from guidance_app.store.files import FolderLock, StoreError, write_atomically
 from guidance_app.store.recordings import (
+    EVENTS,
     RECORDINGS,
     SUMMARY,
     RecordingSummary,
@@ -84,11 +85,8 @@ def finish_recording(folder: Path) -> None:
     writing, drive = RecordingFolder.go_on(folder)
     try:
         before = read_summary(folder)
-        summary = summary_of(drive)
-        if before is not None:
-            summary = before.model_copy(update={"duration_s": drive.duration, "events": len(drive.events)})
         writing.pack()
-        writing.write_summary(summary.model_copy(update={"ended": True}))
+        writing.write_summary(_known_of(drive, before).model_copy(update={"ended": True}))
     finally:
         writing.close()
 
@@ -120,16 +118,34 @@ def _folders(data: Path) -> Iterator[Path]:
 
 def _listed(folder: Path) -> ListedRecording:
     writing = is_being_written(folder)
-    summary = read_summary(folder)
-    if summary is not None:
-        return ListedRecording(folder, summary, being_written=writing)
+    before = read_summary(folder)
+    if before is not None and (before.ended or writing or not _has_grown(folder)):
+        return ListedRecording(folder, before, being_written=writing)
     try:
-        summary = summary_of(open_recording(folder))
+        drive = open_recording(folder)
     except StoreError as error:
         return ListedRecording(folder, None, str(error), writing)
+    summary = _known_of(drive, before)
     if not writing:
         _remember(folder, summary)
     return ListedRecording(folder, summary, being_written=writing)
+
+
+def _has_grown(folder: Path) -> bool:
+    """Whether a drive went on after its last summary, as one that was cut off has."""
+    try:
+        return (folder / EVENTS).stat().st_mtime_ns > (folder / SUMMARY).stat().st_mtime_ns
+    except OSError:
+        return False
+
+
+def _known_of(drive: RecordedDrive, before: RecordingSummary | None) -> RecordingSummary:
+    """What the events tell, and what only the last summary knows."""
+    summary = summary_of(drive)
+    if before is None:
+        return summary
+    told = {"duration_s": summary.duration_s, "events": summary.events, "truncated": summary.truncated}
+    return before.model_copy(update=told)
 
 
 def _remember(folder: Path, summary: RecordingSummary) -> None:

@@ -1,5 +1,7 @@
 """Live sessions over written events, recorded into a data folder, and engines that take a recording again."""
 
+import contextlib
+import queue
 import threading
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -112,3 +114,24 @@ def assert_same(live: Snapshot, replayed: Snapshot) -> None:
         assert live.track.count == replayed.track.count
         for ours, theirs in zip(live.track.pieces[: live.track.count], replayed.track.pieces, strict=False):
             assert ours.tobytes() == theirs.tobytes()
+
+
+class Fed:
+    """A source that gives what a test feeds it."""
+
+    description = "a fed source"
+    duration = None
+    live = True
+
+    def __init__(self) -> None:
+        self._fed: queue.SimpleQueue[Chunk] = queue.SimpleQueue()
+
+    def give(self, chunks: Iterable[Chunk]) -> None:
+        for chunk in chunks:
+            self._fed.put(chunk)
+
+    def events(self, stop: threading.Event) -> Iterator[Chunk | SourceUp]:
+        yield SourceUp(0.0, self.description)
+        while not stop.is_set():
+            with contextlib.suppress(queue.Empty):
+                yield self._fed.get(timeout=0.02)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from guidance_app.documents import GuidanceLineDocument
-from guidance_app.guidance.family import GuidanceLineError, PassFamily, passes_within
+from guidance_app.guidance.family import GuidanceLineError, PassFamily, offset_line, passes_within
 from guidance_app.guidance.patterns import LINES, a_plus, pivot
 from guidance_app.guidance.polyline import Polyline
 from guidance_app.model import FloatArray
@@ -132,3 +132,9 @@ def test_a_curve_that_is_driven_over_and_over_stays_apart() -> None:
         lines.append(line.points)
     gaps = [shapely.LineString(low).distance(shapely.LineString(high)) for low, high in itertools.pairwise(lines)]
     assert min(gaps) > SPACING - 0.05
+
+
+def test_a_line_moved_by_next_to_nothing_stays_where_it_is() -> None:
+    """Nudges there and back leave a rest that GEOS cannot offset by."""
+    line = np.array([[0.0, 0.0], [0.0, 100.0]])
+    assert offset_line(line, 0.1 + 0.2 - 0.3) is line
