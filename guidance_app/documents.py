@@ -1,16 +1,21 @@
 """What is saved: frozen pydantic models with a title, a unit and bounds on every number. No files here.
 
 Every document carries ``schema_version`` of its kind; a newer one than this program knows is refused by the store.
-Units stand in ``json_schema_extra`` so that a form can be made from the model alone. Lengths are metres, angles
-degrees (this is a boundary), positions WGS 84 longitude and latitude in degrees as GeoJSON (RFC 7946) orders them.
+Units stand in ``json_schema_extra`` so that a form can be made from the model alone, with ``labels`` for what may be
+chosen and ``when`` for a member that matters only if another has a certain value. Lengths are metres, angles degrees
+(this is a boundary), positions WGS 84 longitude and latitude in degrees as GeoJSON (RFC 7946) orders them.
 """
 
 import itertools
 import math
+from collections.abc import Mapping
 from enum import StrEnum
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from guidance_app.language import message, sentence
 
 __all__ = [
     "Direction",
@@ -28,6 +33,7 @@ __all__ = [
     "ShiftRecord",
     "Tractor",
     "Units",
+    "choice",
     "quantity",
 ]
 
@@ -42,11 +48,14 @@ def quantity(  # noqa: PLR0913 - a form needs all of these, and a call names eac
     help: str = "",  # noqa: A002 - the form's own word for it
     step: float = 0.01,
     picture: str | None = None,
+    when: tuple[str, Any] | None = None,
 ) -> Any:
     """A number field with a title, a unit and inclusive bounds; the form and the checks both come from it."""
     extra: dict[str, Any] = {"unit": unit, "step": step}
     if picture is not None:
         extra["picture"] = picture
+    if when is not None:
+        extra["when"] = when
     return Field(
         default,
         title=title,
@@ -58,14 +67,27 @@ def quantity(  # noqa: PLR0913 - a form needs all of these, and a call names eac
     )
 
 
+def choice(
+    title: str,
+    default: Any,
+    labels: Mapping[str, str],
+    *,
+    help: str = "",  # noqa: A002 - the form's own word for it
+    when: tuple[str, Any] | None = None,
+) -> Any:
+    """A field whose values are those of ``labels``, which hold what a person reads for each."""
+    extra: dict[str, Any] = {"labels": dict(labels)}
+    if when is not None:
+        extra["when"] = when
+    return Field(default, title=title, description=help, json_schema_extra=extra)
+
+
 def _clean_name(name: str) -> str:
     cleaned = " ".join(name.split())
     if not cleaned:
-        msg = "a name needs at least one character"
-        raise ValueError(msg)
+        raise ValueError(sentence("A name needs at least one character."))
     if any(ord(character) < 32 or ord(character) == 127 for character in cleaned):
-        msg = "a name cannot hold control characters"
-        raise ValueError(msg)
+        raise ValueError(sentence("A name cannot hold control characters."))
     return cleaned
 
 
@@ -113,7 +135,14 @@ class Tractor(Document):
         step=0.1,
     )
     turning_radius: float = quantity(
-        "Turning radius", "m", 0.5, 30, 5.0, help="The tightest circle of the rear axle's centre", step=0.1
+        "Turning radius",
+        "m",
+        0.5,
+        30,
+        5.0,
+        help="The tightest circle of the rear axle's centre",
+        step=0.1,
+        picture="turning",
     )
 
 
@@ -142,9 +171,16 @@ class Implement(Document):
         help="Negative for a front implement",
         picture="implement",
     )
-    offset_right: float = quantity("Offset to the right", "m", -10, 10, 0.0, picture="implement")
+    offset_right: float = quantity(
+        "Offset to the right", "m", -10, 10, 0.0, help="Negative to the left", picture="implement"
+    )
     length: float = quantity("Length", "m", 0, 30, 1.5, help="Front to back, for the headland and the picture")
-    hitch: HitchKind = Field(HitchKind.MOUNTED, title="Hitch")
+    hitch: HitchKind = choice(
+        "Hitch",
+        HitchKind.MOUNTED,
+        {HitchKind.MOUNTED: message("Mounted"), HitchKind.TRAILED: message("Trailed")},
+        help="Mounted on the three-point linkage, or trailed on its own wheels",
+    )
     hitch_back: float = quantity(
         "Hitch point behind the axle",
         "m",
@@ -153,17 +189,24 @@ class Implement(Document):
         0.8,
         help="Only for a trailed implement",
         picture="implement",
+        when=("hitch", "trailed"),
     )
     drawbar: float = quantity(
-        "Hitch to implement axle", "m", 0.3, 20, 4.0, help="Only for a trailed implement", picture="implement"
+        "Hitch to implement axle",
+        "m",
+        0.3,
+        20,
+        4.0,
+        help="Only for a trailed implement",
+        picture="implement",
+        when=("hitch", "trailed"),
     )
     sections: int = Field(1, title="Sections", ge=1, le=64, description="Parts that switch one by one")
 
     @model_validator(mode="after")
     def _overlap_below_width(self) -> "Implement":
         if self.overlap >= self.working_width:
-            msg = f"overlap: {self.overlap:g} m is not less than the working width of {self.working_width:g} m"
-            raise ValueError(msg)
+            raise PydanticCustomError("overlap", message("The overlap must be less than the working width."))
         return self
 
     @property
@@ -177,9 +220,7 @@ class Receiver(Document):
 
     kind: Literal["receiver"] = "receiver"
     name: Name
-    source: str = Field(
-        "sim:", title="Source", max_length=300, description="serial:// tcp:// udp:// gpsd:// file: sim:"
-    )
+    source: str = Field("sim:", title="Source", max_length=300, description="Where the positions come from")
     attitude_source: str | None = Field(
         None,
         title="Attitude sensor",
@@ -187,7 +228,7 @@ class Receiver(Document):
         description="Only when it has a port of its own, in the same words as the source",
     )
     filter: str = Field("adaptive", title="Filter", max_length=40)
-    filter_on: bool = Field(default=True, title="Filtering")
+    filter_on: bool = Field(default=True, title="Filtering", description="Off: raw positions are guided along")
     measuring_time: float = quantity(
         "Measuring time at the start",
         "s",
@@ -197,10 +238,24 @@ class Receiver(Document):
         help="Standing at the start point; 0 leaves it out",
         step=1,
     )
-    look_ahead: float = quantity("Predict ahead", "s", 0.5, 3.0, 1.5, step=0.1)
-    datum: Literal["world", "tokyo"] = Field("world", title="Datum for typing and reading")
-    projection: Literal["geographic", "utm", "plane rectangular"] = Field(
-        "geographic", title="Coordinates for typing and reading"
+    look_ahead: float = quantity(
+        "Predict ahead", "s", 0.5, 3.0, 1.5, help="How far ahead the prediction bar looks", step=0.1
+    )
+    datum: Literal["world", "tokyo"] = choice(
+        "Datum",
+        "world",
+        {"world": message("World"), "tokyo": message("Tokyo")},
+        help="For coordinates that are typed and read",
+    )
+    projection: Literal["geographic", "utm", "plane rectangular"] = choice(
+        "Coordinates",
+        "geographic",
+        {
+            "geographic": message("Latitude, longitude"),
+            "utm": message("UTM"),
+            "plane rectangular": message("Plane rectangular"),
+        },
+        help="As they are typed and read; the zone follows from the place",
     )
 
 
@@ -318,21 +373,50 @@ class Operation(Document):
     tractor: str = Field(title="Tractor", max_length=120)
     implement: str = Field(title="Implement", max_length=120)
     receiver: str | None = Field(None, title="Receiver", max_length=120)
-    method: Method = Field(Method.ROUND_TRIP, title="Method")
-    direction: Direction = Field(Direction.LONGEST_EDGE, title="Direction of the passes")
-    direction_deg: float = quantity("Direction", "deg", 0, 360, 0.0, step=0.1, help="When it is typed")
-    laps: int | None = Field(None, title="Headland laps", ge=0, le=20, description="Empty: from radius and length")
+    method: Method = choice(
+        "Method",
+        Method.ROUND_TRIP,
+        {
+            Method.ROUND_TRIP: message("Round trip"),
+            Method.TRANSFER: message("Transfer"),
+            Method.INTERMEDIATE_DIVISION: message("Intermediate division"),
+            Method.SURROUNDING: message("Surrounding"),
+            Method.LINE: message("Line without a plan"),
+        },
+    )
+    direction: Direction = choice(
+        "Direction of the passes",
+        Direction.LONGEST_EDGE,
+        {
+            Direction.BEST: message("Best found"),
+            Direction.LONGEST_EDGE: message("Longest edge"),
+            Direction.TYPED: message("Typed"),
+            Direction.LINE: message("Guidance line"),
+        },
+    )
+    direction_deg: float = quantity(
+        "Heading", "deg", 0, 360, 0.0, step=0.1, help="Clockwise from north", when=("direction", "typed")
+    )
+    laps: int | None = Field(None, title="Headland laps", ge=0, le=20, description="Empty: as many as a turn needs")
     turning_space: float | None = Field(
         None,
         title="Turning space",
         ge=0,
         le=200,
         allow_inf_nan=False,
-        description="Metres along the edge, instead of a number of laps",
+        description="Depth of the headland; empty: as deep as a turn needs",
         json_schema_extra={"unit": "m", "step": 0.5},
     )
-    start_corner: Literal["nearest", "first-left", "first-right", "last-left", "last-right"] = Field(
-        "nearest", title="Start corner"
+    start_corner: Literal["nearest", "first-left", "first-right", "last-left", "last-right"] = choice(
+        "Start corner",
+        "nearest",
+        {
+            "nearest": message("Nearest to the entrance"),
+            "first-left": message("First pass, left end"),
+            "first-right": message("First pass, right end"),
+            "last-left": message("Last pass, left end"),
+            "last-right": message("Last pass, right end"),
+        },
     )
     laps_first: bool = Field(default=False, title="Drive the headland first")
     reverse_allowed: bool = Field(default=True, title="The tractor may back up in a turn")
@@ -359,8 +443,16 @@ class Settings(Document):
     """What the driver has chosen for the screen."""
 
     kind: Literal["settings"] = "settings"
-    units: Units = Field(Units.METRIC, title="Units")
-    language: Literal["en", "ja", "es"] = Field("en", title="Language")
+    units: Units = choice(
+        "Units",
+        Units.METRIC,
+        {
+            Units.METRIC: message("Metric"),
+            Units.IMPERIAL: message("Imperial"),
+            Units.JAPANESE: message("Japanese"),
+        },
+    )
+    language: Literal["en", "ja", "es"] = choice("Language", "en", {"en": "English", "ja": "日本語", "es": "Español"})
     light_bar_steps: LightBarSteps = Field((0.02, 0.05, 0.10, 0.20, 0.30, 0.50, 0.75, 1.00), title="Light bar steps")
     night: bool = Field(default=False, title="Night")
     sounds: bool = Field(default=True, title="Sounds")
@@ -371,8 +463,10 @@ class Settings(Document):
         steps = self.light_bar_steps
         grows = all(low < high for low, high in itertools.pairwise(steps))
         if not grows or steps[0] < 0.005 or steps[-1] > 10:
-            msg = "light_bar_steps: each step must be larger than the one before, from 0.005 m to 10 m"
-            raise ValueError(msg)
+            raise PydanticCustomError(
+                "light_bar_steps",
+                message("Each step of the light bar must be larger than the one before, from 0.5 cm to 10 m."),
+            )
         return self
 
 

@@ -43,7 +43,8 @@ class Hands:
 
     ``later`` does long work on another thread; what it raises with a sentence is shown to this client. ``tell`` shows
     words for a few seconds, ``bad`` ones until they are closed. ``go`` changes between driving and setting up;
-    ``renew`` makes the panels of all clients anew (another language, other units).
+    ``renew`` makes the panels of all clients anew (another language, other units). ``soon`` shows this client's panels
+    at the next redraw instead of within a quarter of a second.
     """
 
     post: Callable[[Command], None]
@@ -60,6 +61,7 @@ class Hands:
     tell: Callable[..., None]
     go: Callable[[Place], None]
     renew: Callable[[], None]
+    soon: Callable[[], None]
 
 
 class Panel(Protocol):

@@ -45,6 +45,7 @@ HEAD = (
     '<script src="/static/page.js"></script>'
     '<script src="/static/touch.js"></script>'
     '<script src="/static/upload.js"></script>'
+    '<script src="/static/forms.js"></script>'
     '<script type="module" src="/static/lightbar.js"></script>'
 )
 ICON = "icon-192.png"

@@ -42,6 +42,9 @@ class House:
         self.files = Files()
         self._workers = ThreadPoolExecutor(WORKERS, thread_name_prefix="house")
         self._changing = threading.Lock()
+        stored = None if store is None or self.driving else store.settings()
+        if stored is not None:
+            manager.show_as(stored.document)
 
     @property
     def driving(self) -> bool:
@@ -86,6 +89,14 @@ class House:
             if not self.manager.idle:
                 return False
             self.manager.rest(_shown_only(self.manager.job, field))
+            return True
+
+    def show_job(self, job: Job) -> bool:
+        """Plans a job and shows it on the map, driving nothing; False while something is driven, which goes before."""
+        with self._changing:
+            if not self.manager.idle:
+                return False
+            self.manager.rest(job)
             return True
 
     # --- long work -------------------------------------------------------------------------------------------------

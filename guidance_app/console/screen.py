@@ -233,7 +233,7 @@ class Screen:
         return Desk(
             snapshot=snapshot,
             now=now,
-            units=self._job.settings.units,
+            units=self._session.job.settings.units,
             mode=client.scene.mode,
             night=self._night,
             replay=None if replay is None else replay.state,
@@ -248,6 +248,9 @@ class Screen:
 
         def go(place: Place) -> None:
             client.wished_place = place
+
+        def soon() -> None:
+            client.panels_due = 0.0
 
         def desk() -> Desk:
             snapshot = self._session.snapshot()
@@ -272,6 +275,7 @@ class Screen:
             tell=tell,
             go=go,
             renew=self._renew,
+            soon=soon,
         )
 
     def _renew(self) -> None:

@@ -14,11 +14,12 @@ __all__ = ["ExtractionError", "Message", "messages_in", "places_of"]
 WORDS = frozenset({"words", "_words"})
 """Names by which a ``Words`` is called, alone or behind a point."""
 
-POSITIONAL: Mapping[str, int] = {"message": 1, "sentence": 1, "quantity": 1}
+POSITIONAL: Mapping[str, int] = {"message": 1, "sentence": 1, "quantity": 1, "choice": 1}
 """Functions whose first arguments are messages, and how many."""
 
 KEYWORDS: Mapping[str, frozenset[str]] = {
     "quantity": frozenset({"title", "help"}),
+    "choice": frozenset({"title", "help"}),
     "Field": frozenset({"title", "description"}),
 }
 """Functions some of whose keyword arguments are messages."""

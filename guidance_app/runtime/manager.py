@@ -10,8 +10,8 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
-from guidance_app.documents import Implement, Job, Receiver, Tractor
 from guidance_app.language import sentence
+from guidance_app.documents import Implement, Job, Receiver, Settings, Tractor
 from guidance_app.model import Chunk, Command, Snapshot, SourceDown, SourceUp
 from guidance_app.runtime.live import LiveSession
 from guidance_app.runtime.session import Hearer, Session
@@ -53,6 +53,14 @@ def idle_session(job: Job | None = None) -> LiveSession:
     return LiveSession(idle_job(job), _Unplugged())
 
 
+def _shown_as(job: Job, settings: Settings | None) -> Job:
+    """The job with other settings for the screen. The guided point belongs to the engine, which cannot change it."""
+    if settings is None:
+        return job
+    shown = settings.model_copy(update={"guide_implement": job.settings.guide_implement})
+    return job.model_copy(update={"settings": shown})
+
+
 class SessionManager:
     """Hands everything to the session in use. Every method may be called from any thread."""
 
@@ -60,6 +68,8 @@ class SessionManager:
         self._idle = first is None
         self._session: Session = idle_session() if first is None else first
         self._episode = 0
+        self._settings: Settings | None = None
+        self._shown: tuple[Session, Settings | None, Job] | None = None
         self._hearers: dict[int, Hearer] = {}
         self._stop_hearing: dict[int, Callable[[], None]] = {}
         self._next = 0
@@ -84,8 +94,16 @@ class SessionManager:
 
     @property
     def job(self) -> Job:
-        """The documents in use."""
-        return self._session.job
+        """The documents in use, with the settings that are shown."""
+        session, settings, shown = self._session, self._settings, self._shown
+        if shown is None or shown[0] is not session or shown[1] is not settings:
+            shown = (session, settings, _shown_as(session.job, settings))
+            self._shown = shown
+        return shown[2]
+
+    def show_as(self, settings: Settings) -> None:
+        """From now on the screen follows these settings; which point is guided stays as the session began."""
+        self._settings = settings
 
     @property
     def tap(self) -> Tap:

@@ -9,7 +9,7 @@ from typing import assert_never
 from guidance_app.documents import Units
 from guidance_app.language import Words
 
-__all__ = ["area_text", "distance_text", "offset_text", "speed_text", "speed_unit"]
+__all__ = ["area_text", "distance_text", "length_text", "offset_text", "speed_text", "speed_unit"]
 
 INCH = 0.0254
 FOOT = 0.3048
@@ -72,5 +72,15 @@ def _short(number: float, decimals: int, words: Words) -> str:
     """At most three digits and so many decimals: 1.24, 12.4, 124."""
     for places in range(decimals, 0, -1):
         if round(number, places) < 10 ** (3 - places):
+<<<<<<< HEAD
             return words.number(number, places)
     return words.number(number)
+=======
+            return f"{number:.{places}f}"
+    return f"{number:.0f}"
+
+
+def length_text(metres: float, units: Units) -> str:
+    """``2.45 m``, ``8.04 ft``: a length of a machine, to the centimetre."""
+    return f"{metres / FOOT:.2f} ft" if units is Units.IMPERIAL else f"{metres:.2f} m"
+>>>>>>> c23bf99 (Forms from document models: entries as values, pictures, pages of a tab, shelves of documents, the machines panel)

@@ -3,6 +3,7 @@
 from guidance_app.console.desk import Panel, Place
 from guidance_app.console.panels.fields import Fields
 from guidance_app.console.panels.info import Info
+from guidance_app.console.panels.machines import Machines
 from guidance_app.console.panels.menu import Menu
 from guidance_app.console.panels.plan import Plan
 from guidance_app.console.panels.receiver import Receiver
@@ -35,5 +36,6 @@ SETUP_PANELS: dict[str, type[Panel]] = {
     "fields": Fields,
     "plan": Plan,
     "receiver": Receiver,
+    "machines": Machines,
 }
 """While setting up, in the order of the tabs."""

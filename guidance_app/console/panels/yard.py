@@ -5,6 +5,7 @@ from typing import ClassVar
 import viser
 
 from guidance_app.console.desk import Desk, Hands, Place
+from guidance_app.console.forms import FORM_STYLE
 from guidance_app.console.widgets import STYLE, Shown, notice_html
 from guidance_app.language import message
 
@@ -17,7 +18,7 @@ class Yard:
     title: ClassVar[str] = message("Setup")
 
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
-        gui.add_html(STYLE)
+        gui.add_html(STYLE + FORM_STYLE)
         self._hands = hands
         self._words = words = hands.words
         self._problems = Shown(gui)

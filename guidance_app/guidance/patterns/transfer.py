@@ -11,8 +11,8 @@ __all__ = ["METHOD", "TransferOptions"]
 class TransferOptions(PatternOptions):
     """How many passes are left out, or whether all are driven in one direction."""
 
-    skip: int = Field(1, title="Passes left out", ge=0, le=20)
     one_way: bool = Field(default=False, title="All in one direction, back empty")
+    skip: int = Field(1, title="Passes left out", ge=0, le=20, json_schema_extra={"when": ["one_way", False]})
 
 
 def _order(count: int, options: PatternOptions) -> PassOrder:

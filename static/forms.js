@@ -1,0 +1,25 @@
+// The keyboard that fits what is typed. A number that may be negative gets the whole one: some have no minus otherwise.
+// A list is chosen from, not searched: it brings no keyboard up.
+"use strict";
+
+addEventListener(
+  "pointerdown",
+  (event) => {
+    const input = event.target;
+    if (!(input instanceof HTMLInputElement)) return;
+    if (input.closest(".mantine-Select-root, .mantine-Select-wrapper") || input.getAttribute("aria-haspopup") === "listbox") {
+      input.inputMode = "none";
+      return;
+    }
+    let row = input.closest(".mantine-TextInput-root");
+    while (row && !row.nextElementSibling) row = row.parentElement;
+    for (let next = row?.nextElementSibling, steps = 0; next && steps < 2; next = next.nextElementSibling, steps += 1) {
+      const hint = next.querySelector("[data-keys]");
+      if (hint) {
+        input.inputMode = hint.dataset.keys;
+        return;
+      }
+    }
+  },
+  true,
+);
