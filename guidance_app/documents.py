@@ -449,7 +449,8 @@ class Settings(Document):
         {
             Units.METRIC: message("Metric"),
             Units.IMPERIAL: message("Imperial"),
-            Units.JAPANESE: message("Japanese"),
+            Units.JAPANESE: message("Metric, areas in ares"),
+            Units.TAN: message("Metric, areas in tan and chō"),
         },
     )
     language: Literal["en", "ja", "es"] = choice("Language", "en", {"en": "English", "ja": "日本語", "es": "Español"})

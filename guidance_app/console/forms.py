@@ -119,6 +119,11 @@ class Form(Generic[M]):
         """Whether anything stands in it that was not there at first."""
         return self.draft != self._view.draft()
 
+    def set(self, member: str, value: Any) -> None:
+        """Puts a value into an input, as a finger would."""
+        self._inputs[member].set(value)
+        self._touch(member)
+
     def read(self) -> M | None:
         """The document; None when something is wrong, which then stands under its entry."""
         checked = self._view.checked(self.draft)
@@ -157,7 +162,7 @@ class Form(Generic[M]):
         return self._wrong.get("", "") or named
 
     def _length(self, metres: float) -> str:
-        return self._view.words.digits(length_text(metres, self._view.units))
+        return length_text(metres, self._view.units, self._view.words)
 
 
 class _Input:
@@ -189,6 +194,10 @@ class _Input:
         """The text, the chosen value or the switch."""
         value = self._handle.value
         return self._values.get(value, value) if self._values else value
+
+    def set(self, value: Any) -> None:
+        """Shows another value."""
+        self._handle.value = next((label for label, one in self._values.items() if one == value), value)
 
     def on_touch(self, touched: Callable[[str], None]) -> None:
         """Calls ``touched`` with the member, on viser's loop."""

@@ -10,9 +10,9 @@ from guidance_app.console.desk import Hands
 from guidance_app.console.forms import Form
 from guidance_app.console.widgets import Shown
 from guidance_app.documents import Receiver
-from guidance_app.estimation.filters import FILTERS
 from guidance_app.language import message
 from guidance_app.sources import SOURCES
+from guidance_app.sources.ports import found_ports
 
 __all__ = ["FILTER_WORDS", "ReceiverForm", "source_problem"]
 
@@ -33,6 +33,13 @@ FILTER_WORDS: Mapping[str, tuple[str, str]] = {
 }
 """By filter: its name and one sentence on when to choose it."""
 
+ELSEWHERE = (
+    (message("Network, UDP port 9999"), "udp://:9999"),
+    (message("gpsd on this machine"), "gpsd://localhost"),
+    (message("Simulated receiver"), "sim:"),
+)
+"""Sources that need no port, by what a person reads."""
+
 
 def source_problem(source: str) -> str | None:
     """Why this cannot be a source, as an English pattern with ``{known}``; None when its scheme is known."""
@@ -43,13 +50,16 @@ def source_problem(source: str) -> str | None:
 
 
 class ReceiverForm:
-    """The plain form with a list of ports above it and a sentence on the chosen filter below."""
+    """The plain form with a list of what is plugged in above it, and a sentence on the chosen filter below."""
 
     def __init__(
         self, hands: Hands, gui: viser.GuiApi, initial: Mapping[str, Any], touched: Callable[[], None]
     ) -> None:
         self._words = hands.words
-        filters = [(name, words[0]) for name, words in FILTER_WORDS.items() if name in FILTERS]
+        self._hands = hands
+        self._found: dict[str, str] = {}
+        self._plugged: Any = gui.add_dropdown(hands.words("Take from"), (hands.words("looking …"),))
+        filters = [(name, words[0]) for name, words in FILTER_WORDS.items() if name != "off"]
         self._form = Form(
             gui,
             Receiver,
@@ -60,7 +70,24 @@ class ReceiverForm:
             touched=touched,
         )
         self._about = Shown(gui)
+        hands.later(self._look)
+
+        @self._plugged.on_update
+        async def _(event: viser.GuiEvent[viser.GuiDropdownHandle[str]]) -> None:
+            uri = self._found.get(event.target.value)
+            if event.client_id is not None and uri is not None:
+                self._form.set("source", uri)
+
         self.show()
+
+    def _look(self) -> None:
+        """The ports that are there now, and what needs none."""
+        words = self._words
+        typed = words("as typed below")
+        self._found = {f"{port.path} {port.name}".strip(): f"serial://{port.path}" for port in found_ports()}
+        self._found |= {words(label): uri for label, uri in ELSEWHERE}
+        self._plugged.options = (typed, *self._found)
+        self._plugged.value = typed
 
     @property
     def changed(self) -> bool:
@@ -72,12 +99,12 @@ class ReceiverForm:
         receiver = self._form.read()
         if receiver is None:
             return None
-        problem = source_problem(receiver.source)
-        if problem is None:
-            return receiver
         known = ", ".join(f"{scheme}:" for scheme in SOURCES)
-        self._form.say({"source": self._words(problem, known=known)})
-        return None
+        sources = {"source": receiver.source, "attitude_source": receiver.attitude_source or "sim:"}
+        wrong = {member: source_problem(uri) for member, uri in sources.items()}
+        said = {member: self._words(words, known=known) for member, words in wrong.items() if words is not None}
+        self._form.say(said)
+        return None if said else receiver
 
     def say(self, wrong: Mapping[str, str]) -> None:
         """Puts sentences under entries."""

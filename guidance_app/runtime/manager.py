@@ -10,8 +10,8 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
-from guidance_app.language import sentence
 from guidance_app.documents import Implement, Job, Receiver, Settings, Tractor
+from guidance_app.language import sentence
 from guidance_app.model import Chunk, Command, Snapshot, SourceDown, SourceUp
 from guidance_app.runtime.live import LiveSession
 from guidance_app.runtime.session import Hearer, Session

@@ -216,7 +216,7 @@ class FormView(Generic[M]):
         if entry.kind is EntryKind.SWITCH:
             return bool(shown)
         text = str(shown).strip()
-        if not text and entry.optional:
+        if entry.optional and not text:
             return None
         if entry.kind not in (EntryKind.NUMBER, EntryKind.WHOLE):
             return text

@@ -72,15 +72,10 @@ def _short(number: float, decimals: int, words: Words) -> str:
     """At most three digits and so many decimals: 1.24, 12.4, 124."""
     for places in range(decimals, 0, -1):
         if round(number, places) < 10 ** (3 - places):
-<<<<<<< HEAD
             return words.number(number, places)
     return words.number(number)
-=======
-            return f"{number:.{places}f}"
-    return f"{number:.0f}"
 
 
-def length_text(metres: float, units: Units) -> str:
+def length_text(metres: float, units: Units, words: Words) -> str:
     """``2.45 m``, ``8.04 ft``: a length of a machine, to the centimetre."""
-    return f"{metres / FOOT:.2f} ft" if units is Units.IMPERIAL else f"{metres:.2f} m"
->>>>>>> c23bf99 (Forms from document models: entries as values, pictures, pages of a tab, shelves of documents, the machines panel)
+    return f"{words.number(metres / FOOT, 2)} ft" if units is Units.IMPERIAL else f"{words.number(metres, 2)} m"

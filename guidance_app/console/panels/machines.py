@@ -13,6 +13,7 @@ from guidance_app.console.receiver_form import ReceiverForm
 from guidance_app.console.shelf import Shelf, ShelfWords, Shelves
 from guidance_app.console.widgets import notice_html
 from guidance_app.documents import Implement, Receiver, Tractor
+from guidance_app.language import message
 from guidance_app.view.units import length_text
 
 __all__ = ["Machines"]
@@ -21,7 +22,7 @@ __all__ = ["Machines"]
 class Machines:
     """Three shelves behind one page."""
 
-    title: ClassVar[str] = "Machines"
+    title: ClassVar[str] = message("Machines")
 
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
         self._pages = Pages(gui, hands)
@@ -36,7 +37,7 @@ class Machines:
         self._open()
 
     def _say(self, metres: float) -> str:
-        return self._hands.words.digits(length_text(metres, self._units))
+        return length_text(metres, self._units, self._hands.words)
 
     def _open(self) -> None:
         self._pages.turn(self._first)
