@@ -59,7 +59,6 @@ class House:
     # --- what is driven --------------------------------------------------------------------------------------------
 
     def drive(self, job: Job) -> None:
-<<<<<<< HEAD
         """Ends what is driven and drives ``job`` from its receiver's source, recorded. Raises ``SourceError``."""
         source = open_source(job.receiver.source, job.receiver.attitude_source)
         self.take(LiveSession(job, source) if self.store is None else recorded_session(self.store.root, job, source))
@@ -72,10 +71,6 @@ class House:
         except ValidationError:
             raise SourceError(sentence("The receiver's address is too long: write it shorter.")) from None
         self.drive(job.model_copy(update={"receiver": receiver}))
-=======
-        """Ends what is driven and drives ``job`` from its receiver's source. Raises ``SourceError``."""
-        self.take(LiveSession(job, open_source(job.receiver.source, job.receiver.attitude_source)))
->>>>>>> f6bb962 (The machines panel: tractors, implements, receivers, with conflicts, archive and undo)
 
     def take(self, session: Session) -> None:
         """Ends what is driven and goes on with this session."""
