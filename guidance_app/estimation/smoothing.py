@@ -3,19 +3,23 @@
 Expectation propagation over the receiver's cells with one motion model whose liveliness follows the drive itself (see
 ``smoothing_kernels``): stiff on a line, it gives way where the last sweep saw the drive change. That alone takes a
 quarter off the error of the same smoother with fixed noise, and makes its ellipse true in stop and go. A recording is
-cut at gaps over 10 s, and every 20 000 fixes with an overlap, so that its memory stays bounded. Fixes that all others
-contradict are left out. The first heading is the way of the first metres; if the whole then ran mostly in reverse, it
-was the other way round.
+cut at gaps over 10 s, and every 20 000 fixes with an overlap, so that its memory stays bounded. The first heading is
+the way of the first metres; if the whole then ran mostly in reverse, it was the other way round.
+
+Fixes that all others contradict are left out. Where several contradict the first sweep, all is linearised about the
+filter for driving instead, at the price of its time: that keeps lively drives at one fix a second from running away.
 """
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from guidance_app.angles import wrap_2pi
 from guidance_app.estimation.filter import FilterSettings
+from guidance_app.estimation.filters.adaptive import Adaptive
 from guidance_app.estimation.kernels import (
     CURVATURE,
     DRIFT_EAST,
@@ -55,6 +59,9 @@ LATE = 1.5
 ABOUT = 2.0
 GIVE = 1.0
 """How much of the drive's own change within so many seconds the motion model takes over."""
+FARTHEST = np.array([2.0, 2.0, 0.3, 2.0, 0.1, 1.0, 1.0, 2.0, 2.0])
+"""How far a sweep moves, at most, the states about which the next one is linearised."""
+NOWHERE = np.zeros((0, STATES))
 SHARP = (2.0, 0.3, 2.0)
 """Acceleration noise, curvature and memory where the fixes contradict the motion model: the tractor did more there."""
 
@@ -92,9 +99,9 @@ def _smoothed(piece: list[Measurement], settings: FilterSettings) -> list[Pose]:
     departure = _first_departure(piece)
     epochs = epochs_of(piece, settings)
     start = departure or Departure(0.0, math.pi, 0.0, 0.3)
-    means, covariances = _swept(piece[0], start, epochs)
+    means, covariances = _swept(piece, start, epochs, settings)
     if departure is not None and driven_backwards(means) and piece[0].heading is None:
-        means, covariances = _swept(piece[0], replace(start, heading=start.heading + math.pi), epochs)
+        means, covariances = _swept(piece, replace(start, heading=start.heading + math.pi), epochs, settings)
     standing = epochs.z[:, STANDING_SD] > 0.0
     return [
         _pose(z, means[k], covariances[k], known=departure is not None, still=bool(standing[k]))
@@ -117,25 +124,90 @@ def _first_departure(piece: list[Measurement]) -> Departure | None:
     return None
 
 
-def _swept(first: Measurement, departure: Departure, epochs: Epochs) -> tuple[FloatArray, FloatArray]:
-    """Means (N, 9) and covariances (N, n, n) after all sweeps."""
-    silent = epochs.z[:, WHITE] == 0.0
-    sites = first_sites(epochs.z, epochs.t)
-    sites[silent, 2:] = 0.0
-    calm = epochs.models
-    models = calm
-    sharp = np.zeros(len(epochs.t), dtype=bool)
-    for sweep in range(SWEEPS):
-        x, p = _first_state(first, departure, epochs)
-        tape = forward(x, p, epochs.t, epochs.z, (models, epochs.common), sites)
-        means, covariances = backward(tape)
-        if sweep < SWEEPS - 1:
-            wrong = move_sites(epochs.z, means, covariances, sites)
-            models = _livelier(calm, epochs.t, means)
-            sharp |= wrong > 0.0
-            models[sharp] = SHARP
-            sites[silent, 2:] = 0.0
-    return means, covariances
+def _swept(
+    piece: list[Measurement], departure: Departure, epochs: Epochs, settings: FilterSettings
+) -> tuple[FloatArray, FloatArray]:
+    """Means (N, 9) and covariances (N, n, n) after all sweeps.
+
+    Where the fixes contradict the first sweep, as on a lively drive at one fix a second, linearising about it would
+    lead astray. Then every sweep is linearised about the one before, and the first about the filter for driving.
+    """
+    first = _sweep(piece[0], departure, epochs, _Sweeping.of(epochs))
+    if first.sharp.any():
+        about, believed = _filtered(piece, departure, epochs, settings)
+        first = _sweep(piece[0], departure, epochs, replace(_Sweeping.of(epochs), about=about, believed=believed))
+    now = first
+    for _ in range(SWEEPS - 1):
+        now = _sweep(piece[0], departure, epochs, now)
+    return now.means, now.covariances
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Sweeping:
+    """What one sweep leaves for the next.
+
+    The fixes as sites, the motion models, where the models were wrong (N,), the means and covariances, the states
+    about which to linearise (none for the sweep's own), and which fixes are no outliers (N,).
+    """
+
+    sites: FloatArray
+    models: FloatArray
+    sharp: NDArray[np.bool_]
+    means: FloatArray
+    covariances: FloatArray
+    about: FloatArray
+    believed: FloatArray
+
+    @staticmethod
+    def of(epochs: Epochs) -> "_Sweeping":
+        """Before the first sweep."""
+        sites = first_sites(epochs.z, epochs.t)
+        sites[epochs.z[:, WHITE] == 0.0, 2:] = 0.0
+        sharp = np.zeros(len(epochs.t), dtype=bool)
+        covariances = np.zeros((0, epochs.n, epochs.n))
+        return _Sweeping(sites, epochs.models, sharp, NOWHERE, covariances, NOWHERE, np.zeros(len(epochs.t)))
+
+
+def _sweep(first: Measurement, departure: Departure, epochs: Epochs, before: _Sweeping) -> _Sweeping:
+    """Forward and back, and what the next sweep needs."""
+    x, p = _first_state(first, departure, epochs)
+    drive = (before.models, epochs.common, before.about)
+    means, covariances = backward(forward(x, p, epochs.t, epochs.z, drive, before.sites))
+    sites = before.sites.copy()
+    wrong = move_sites(epochs.z, means, covariances, sites, before.believed)
+    sites[epochs.z[:, WHITE] == 0.0, 2:] = 0.0
+    sharp = before.sharp | (wrong > 0.0)
+    models = _livelier(epochs.models, epochs.t, means)
+    models[sharp] = SHARP
+    about = before.about
+    if len(about):
+        about = about + np.clip(means - about, -FARTHEST, FARTHEST)
+    return _Sweeping(sites, models, sharp, means, covariances, about, before.believed)
+
+
+def _filtered(
+    piece: list[Measurement], departure: Departure, epochs: Epochs, settings: FilterSettings
+) -> tuple[FloatArray, FloatArray]:
+    """The states of the filter for driving (N, 9), which nothing leads astray, and which fixes it believed (N,)."""
+    estimator = Adaptive(settings)
+    first = replace(piece[0], heading=departure.heading, heading_sigma=departure.heading_sd)
+    poses = [estimator.step(z) for z in (first, *piece[1:])]
+    known = [pose for pose in poses if pose.heading_known] or poses
+    t = np.array([pose.t for pose in poses])
+    heading = np.unwrap([pose.heading for pose in known])
+    columns = {
+        EAST: (t, [pose.east for pose in poses]),
+        NORTH: (t, [pose.north for pose in poses]),
+        HEADING: ([pose.t for pose in known], heading),
+        SPEED: (t, [pose.speed for pose in poses]),
+        CURVATURE: (t, [pose.curvature for pose in poses]),
+    }
+    about = np.zeros((len(epochs.t), STATES))
+    for column, (times, values) in columns.items():
+        about[:, column] = np.interp(epochs.t, times, values)
+    believed = np.zeros(len(epochs.t))
+    believed[epochs.real] = [0.0 if pose.dead_reckoned else 1.0 for pose in poses]
+    return about, believed
 
 
 def _livelier(calm: FloatArray, t: FloatArray, means: FloatArray) -> FloatArray:

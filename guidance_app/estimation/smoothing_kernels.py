@@ -14,6 +14,7 @@ import numpy as np
 
 from guidance_app.estimation.kernels import (
     DRIFT_EAST,
+    MEMORY,
     SPEED,
     STATES,
     TRANSITION,
@@ -60,14 +61,34 @@ transitions (N, 11), the rows h (N, 7, n) and per measurement innovation and its
 
 
 @numba.njit(cache=True)
+def _moved(x: FloatArray, near: FloatArray, dt: float, model: FloatArray, common: FloatArray, f: FloatArray) -> None:
+    """Moves ``x`` on by the motion's derivative at ``near``, which becomes ``f``; both are moved in place."""
+    away = x - near
+    transition(near, dt, model[MEMORY], common, f)
+    x[:] = near + away
+    x[0] += f[0] * away[2] + f[1] * away[3] + f[2] * away[4]
+    x[1] += f[3] * away[2] + f[4] * away[3] + f[5] * away[4]
+    x[2] += f[6] * away[3] + f[7] * away[4]
+    x[4] += (f[8] - 1.0) * away[4]
+    for slow in range(6, x.size):
+        x[slow] += ((f[9] if slow == 6 else f[10]) - 1.0) * away[slow]
+
+
+@numba.njit(cache=True)
 def forward(
-    x: FloatArray, p: FloatArray, t: FloatArray, z: FloatArray, noise: tuple[FloatArray, FloatArray], sites: FloatArray
+    x: FloatArray,
+    p: FloatArray,
+    t: FloatArray,
+    z: FloatArray,
+    drive: tuple[FloatArray, FloatArray, FloatArray],
+    sites: FloatArray,
 ) -> Tape:
     """Filters all epochs from the first state. ``x`` and ``p`` are used up.
 
-    ``z`` holds a reading vector a row; ``noise`` a motion model and the common noise a row.
+    ``z`` holds a reading vector a row; ``drive`` a motion model a row, the common noise a row, and the states (N, 9)
+    about which everything is linearised: those of an earlier sweep, or none, that is about the estimate itself.
     """
-    models, common = noise
+    models, common, about = drive
     count = t.size
     n = p.shape[0]
     means = np.zeros((count, STATES))
@@ -76,17 +97,22 @@ def forward(
     rows = np.zeros((count, MEASUREMENTS, n))
     taken = np.zeros((count, MEASUREMENTS, 2))
     column = np.empty(n)
+    given = about.shape[0] == count
     for k in range(count):
         if k > 0:
             dt = t[k] - t[k - 1]
-            transition(x, dt, models[k, 2], common[k], transitions[k])
+            near = about[k - 1].copy() if given else x.copy()
+            _moved(x, near, dt, models[k], common[k], transitions[k])
             spread(p, transitions[k], n)
-            add_process_noise(x, p, dt, models[k], common[k])
+            add_process_noise(near, p, dt, models[k], common[k])
         means[k] = x
         covariances[k] = p
         for which in range(MEASUREMENTS):
             h = rows[k, which]
-            innovation, variance = observe(x, z[k], which, h)
+            near = about[k] if given else x
+            innovation, variance = observe(near, z[k], which, h)
+            for i in range(n):
+                innovation -= h[i] * (x[i] - near[i])
             if which < 2:
                 innovation += sites[k, SITE_MEAN + which] - z[k, Z_EAST + which]
                 variance = sites[k, SITE_VARIANCE + which]
@@ -247,10 +273,13 @@ def first_sites(z: FloatArray, t: FloatArray) -> FloatArray:
 
 
 @numba.njit(cache=True)
-def move_sites(z: FloatArray, smooth: FloatArray, spreads: FloatArray, sites: FloatArray) -> FloatArray:
+def move_sites(
+    z: FloatArray, smooth: FloatArray, spreads: FloatArray, sites: FloatArray, believed: FloatArray
+) -> FloatArray:
     """One round of expectation propagation: every fix's site, in place, against what all the others say.
 
-    Gives shape (N,): 1 where the fixes contradict the motion model.
+    ``believed`` is 1 for a fix that is no outlier whatever the others say. Gives shape (N,): 1 where the fixes
+    contradict the motion model.
     """
     n = spreads.shape[1]
     h = np.zeros(n)
@@ -273,14 +302,15 @@ def move_sites(z: FloatArray, smooth: FloatArray, spreads: FloatArray, sites: Fl
             away = max(abs(z[k, Z_EAST + axis] - held) - 0.5 * cell, 0.0)
             far[k] = max(far[k], away / doubt)
             _move_site(sites[k], axis, (z[k, Z_EAST + axis], cell, white), (held, 1.0 / others))
-    return _leave_out(z, far, sites)
+    return _leave_out(z, far, sites, believed)
 
 
 @numba.njit(cache=True)
-def _leave_out(z: FloatArray, far: FloatArray, sites: FloatArray) -> FloatArray:
+def _leave_out(z: FloatArray, far: FloatArray, sites: FloatArray, believed: FloatArray) -> FloatArray:
     """Leaves out the fixes that are ``far``, in standard deviations, from what all the others say, in place.
 
-    More than two of them in a row are not outliers: there the motion model is wrong, and they stay.
+    More than two of them in a row are not outliers, nor is one that is ``believed``: there the motion model is wrong,
+    and they stay.
     """
     real = np.flatnonzero(z[:, WHITE] > 0.0)
     wrong = np.zeros(z.shape[0])
@@ -289,12 +319,12 @@ def _leave_out(z: FloatArray, far: FloatArray, sites: FloatArray) -> FloatArray:
         if i < real.size and far[real[i]] > OUTLIER:
             run += 1
             continue
-        if run <= MOST_OUTLIERS:
-            for j in range(i - run, i):
+        for j in range(i - run, i):
+            if run > MOST_OUTLIERS or believed[real[j]] > 0.0:
+                wrong[real[max(j - 2, 0)] : real[min(j + 2, real.size - 1)] + 1] = 1.0
+            else:
                 sites[real[j], SITE_VARIANCE] = 0.0
                 sites[real[j], SITE_VARIANCE + 1] = 0.0
-        else:
-            wrong[real[max(i - run - 2, 0)] : real[min(i + 1, real.size - 1)] + 1] = 1.0
         run = 0
     return wrong
 

@@ -105,13 +105,31 @@ def test_a_receiver_without_rtk_says_how_far_it_may_be_off(real_data: Path) -> N
 
 
 @pytest.mark.parametrize("which", ["car", "tractor"])
-def test_the_smoother_stays_on_real_logs(which: str, request: pytest.FixtureRequest) -> None:
+def test_smoothing_a_1_hz_log_is_better_than_leaving_it(which: str, request: pytest.FixtureRequest) -> None:
     recording, truth = request.getfixturevalue(which)
+    recording = replace(recording, velocity=None, quality=FixQuality.RTK_FIXED)
+    ours, raw = (score(as_courses(track), truth) for track in (smooth_recording(recording), estimated_raw(recording)))
+    assert ours.rms < raw.rms
+    assert ours.worst < 0.5
+    assert ours.heading_rms is not None
+    assert raw.heading_rms is not None
+    assert ours.heading_rms < raw.heading_rms
+    assert ours.within_ellipse is not None
+    assert ours.within_ellipse > 0.88
+
+
+def test_the_smoother_stays_on_a_log_with_velocity(tractor: tuple[Recording, Track]) -> None:
+    recording, truth = tractor
     errors = errors_of(smooth_recording(recording), truth)
     assert np.all(np.isfinite(errors.distance))
-    assert np.median(errors.distance) * CM < 40
-    assert np.percentile(errors.distance, 95) < 2.5
-    assert errors.distance.max() < 80
+    assert np.median(errors.distance) * CM < 15
+    assert np.percentile(errors.distance, 95) * CM < 40
+    assert errors.distance.max() < 3
+
+
+def estimated_raw(recording: Recording) -> Track:
+    """The fixes as they are."""
+    return estimate_recording(recording, "off")
 
 
 @pytest.mark.parametrize("log", [TRACTOR.format(4), "nmea/tractor_9m/impl9m_TLG00008_4dec.nmea"])

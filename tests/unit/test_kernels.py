@@ -315,7 +315,7 @@ def test_the_backward_pass_is_rauch_tung_striebels(n: int):
     x = np.zeros(STATES)
     x[SPEED] = 1.3
     models, common = np.tile(MODEL, (count, 1)), np.tile(COMMON, (count, 1))
-    tape = forward(x.copy(), np.eye(n) * 0.05, t, z, (models, common), sites)
+    tape = forward(x.copy(), np.eye(n) * 0.05, t, z, (models, common, np.zeros((0, STATES))), sites)
     smooth, spreads = backward(tape)
 
     means, covariances, transitions, rows, taken = tape
