@@ -194,17 +194,13 @@ def _filtered(
     poses = [estimator.step(z) for z in (first, *piece[1:])]
     known = [pose for pose in poses if pose.heading_known] or poses
     t = np.array([pose.t for pose in poses])
-    heading = np.unwrap([pose.heading for pose in known])
-    columns = {
-        EAST: (t, [pose.east for pose in poses]),
-        NORTH: (t, [pose.north for pose in poses]),
-        HEADING: ([pose.t for pose in known], heading),
-        SPEED: (t, [pose.speed for pose in poses]),
-        CURVATURE: (t, [pose.curvature for pose in poses]),
-    }
     about = np.zeros((len(epochs.t), STATES))
-    for column, (times, values) in columns.items():
-        about[:, column] = np.interp(epochs.t, times, values)
+    about[:, EAST] = np.interp(epochs.t, t, np.array([pose.east for pose in poses]))
+    about[:, NORTH] = np.interp(epochs.t, t, np.array([pose.north for pose in poses]))
+    about[:, SPEED] = np.interp(epochs.t, t, np.array([pose.speed for pose in poses]))
+    about[:, CURVATURE] = np.interp(epochs.t, t, np.array([pose.curvature for pose in poses]))
+    heading = np.unwrap(np.array([pose.heading for pose in known]))
+    about[:, HEADING] = np.interp(epochs.t, np.array([pose.t for pose in known]), heading)
     believed = np.zeros(len(epochs.t))
     believed[epochs.real] = [0.0 if pose.dead_reckoned else 1.0 for pose in poses]
     return about, believed
