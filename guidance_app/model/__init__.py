@@ -43,6 +43,7 @@ from guidance_app.model.commands import (
     TakePass,
     WorkMode,
 )
+from guidance_app.model.drive import NO_PASS, DriveLog
 from guidance_app.model.known import Ghost, LinkState, LinkStatus, OffsetRecord, Snapshot
 from guidance_app.model.lines import Guidance, Pass, Plan, PlanCosts, Segment, SegmentKind, TurnGuide
 from guidance_app.model.motion import Measurement, Pose, Prediction
@@ -72,6 +73,7 @@ from guidance_app.model.worked import CoverageTotals, Strip, Trail
 __all__ = [
     "ATTITUDE",
     "CORRECTIONS",
+    "NO_PASS",
     "POSITION_OFFSETS",
     "RECEIVER",
     "ApplyRollZero",
@@ -83,6 +85,7 @@ __all__ = [
     "Command",
     "Commanded",
     "CoverageTotals",
+    "DriveLog",
     "DropOffset",
     "EndDrive",
     "Event",

@@ -1,0 +1,133 @@
+"""Recordings opened for looking back: their columns, kept beside the data so that the second time takes a moment.
+
+What is kept is named by the recording's content and by this program's version: another program makes it anew, and a
+kept file that is damaged is made anew too.
+"""
+
+import json
+import zipfile
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import shapely
+
+from guidance_app import __version__
+from guidance_app.batch.drive_log import gathered
+from guidance_app.boundary import frame_of, polygon_in
+from guidance_app.documents import Job
+from guidance_app.geodesy import FieldFrame
+from guidance_app.model import CoverageTotals, DriveLog, FloatArray
+from guidance_app.recording import RecordedDrive
+from guidance_app.reports.ledger import Additions, LedgerEntry, ledger_entry
+from guidance_app.store.files import StoreError, write_atomically
+from guidance_app.store.recordings import open_recording
+
+__all__ = ["Review", "additions_of", "entry_of", "keep_additions", "opened_review", "review_of"]
+
+KEPT = Path(".derived") / "reviews"
+LAYOUT = 1
+"""Of a kept file; changes with the columns."""
+ADDITIONS = "ledger.json"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Review:
+    """A recording with its columns and what was worked in all."""
+
+    name: str
+    job: Job
+    log: DriveLog
+    totals: CoverageTotals
+    truncated: str | None
+
+    @property
+    def boundary(self) -> tuple[FloatArray, ...]:
+        """The field's rings in the frame of the log; empty without a field."""
+        if self.job.field is None:
+            return ()
+        frame = frame_of(self.job.field.boundary)
+        if self.log.origin_deg is not None:
+            frame = FieldFrame(*self.log.origin_deg)
+        polygon = polygon_in(frame, self.job.field.boundary)
+        return tuple(shapely.get_coordinates(ring) for ring in (polygon.exterior, *polygon.interiors))
+
+
+def opened_review(path: Path, data: Path, progress: Callable[[float], None] | None = None) -> Review:
+    """The review of a recording's folder or zip. Raises ``StoreError``; ``progress`` hears from 0 to 1."""
+    drive = open_recording(path)
+    place = data / KEPT / f"{drive.digest[:40]}-{__version__}-{LAYOUT}.npz"
+    kept = _kept(place)
+    if kept is None:
+        kept = _made(drive, progress)
+        _keep(place, *kept)
+    elif progress is not None:
+        progress(1.0)
+    return Review(drive.name, drive.job, kept[0], kept[1], drive.truncated)
+
+
+def review_of(drive: RecordedDrive, progress: Callable[[float], None] | None = None) -> Review:
+    """The review of a drive in hand; nothing is kept."""
+    log, totals = _made(drive, progress)
+    return Review(drive.name, drive.job, log, totals, drive.truncated)
+
+
+def _made(drive: RecordedDrive, progress: Callable[[float], None] | None) -> tuple[DriveLog, CoverageTotals]:
+    gathering = gathered(drive.job, drive.events, drive.filter_name, drive.settings, progress)
+    return gathering.log(), gathering.totals or CoverageTotals()
+
+
+def _kept(place: Path) -> tuple[DriveLog, CoverageTotals] | None:
+    """What was kept; None where there is nothing, or nothing that can be read."""
+    if not place.is_file():
+        return None
+    try:
+        with place.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
+            columns = {name: file[name] for name in DriveLog.columns()}
+            facts = json.loads(str(file["facts"]))
+            totals = CoverageTotals(**facts["totals"])
+            origin = facts["origin_deg"]
+    except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile, EOFError):
+        return None
+    return DriveLog(**columns, origin_deg=None if origin is None else (origin[0], origin[1])), totals
+
+
+def _keep(place: Path, log: DriveLog, totals: CoverageTotals) -> None:
+    """Keeps the columns; where that cannot be, the next time takes as long again, and nothing else is lost."""
+    facts = json.dumps({"totals": asdict(totals), "origin_deg": log.origin_deg})
+    columns = {name: getattr(log, name) for name in DriveLog.columns()}
+    unfinished = place.with_name(place.name + ".part.npz")
+    try:
+        place.parent.mkdir(parents=True, exist_ok=True)
+        np.savez(unfinished, facts=np.array(facts), **columns)
+        unfinished.replace(place)
+    except OSError:
+        unfinished.unlink(missing_ok=True)
+
+
+# --- what the driver adds --------------------------------------------------------------------------------------------
+
+
+def additions_of(folder: Path) -> Additions:
+    """What was written beside a recording; empty where nothing was. Raises ``StoreError`` for a broken file."""
+    path = folder / ADDITIONS
+    if not path.is_file():
+        return Additions()
+    try:
+        return Additions(**json.loads(path.read_bytes()))
+    except (OSError, ValueError, TypeError) as error:
+        msg = f"{path} cannot be read as additions to the ledger: {error}"
+        raise StoreError(msg) from error
+
+
+def keep_additions(folder: Path, additions: Additions) -> None:
+    """Writes them beside the recording. Raises ``StoreError``."""
+    content = json.dumps(asdict(additions), ensure_ascii=False, indent=1).encode() + b"\n"
+    write_atomically(folder / ADDITIONS, content)
+
+
+def entry_of(review: Review, additions: Additions | None = None) -> LedgerEntry:
+    """The ledger's entry of a review, with the field's boundary for its map."""
+    entry = ledger_entry(review.name, review.job, review.log, review.totals, additions)
+    return replace(entry, boundary=review.boundary)
