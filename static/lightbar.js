@@ -74,7 +74,7 @@ const sayWords = (known, style) => {
   const turn = [(known.m ? words.inTurn : words.turn).replace("{distance}", distance), seconds, fits ? "" : words.tight];
   setText(turnLine, distance && turn.filter((part) => part).join(" · "));
   turnLine.dataset.level = level;
-  setText(workLine, known.w === undefined ? "" : known.w ? words.working : words.lifted);
+  setText(workLine, known.w === undefined ? "" : known.z ? words.paused : known.w ? words.working : words.lifted);
   workLine.dataset.down = known.w ?? "";
   setText(speedNumber, known.v ?? "");
   setText(speedUnit, known.v ? style.speed : "");
@@ -89,7 +89,7 @@ let lastLevel = "far";
 
 const alarm = (before, sounds) => {
   const level = shared.state === "guide" ? (shared.message.u?.[2] ?? "far") : lastLevel;
-  const lost = before === "guide" && shared.state !== "guide";
+  const lost = before === "guide" && !["guide", "measuring", "finished"].includes(shared.state);
   const turning = level === "now" && lastLevel !== "now";
   lastLevel = level;
   if (!sounds || !(lost || turning) || performance.now() - lastAlarm < ALARM_GAP) return;

@@ -22,6 +22,7 @@ const UNTOLD = {
   tight: "",
   working: "",
   lifted: "",
+  paused: "",
   notSent: "{file} could not be sent",
 };
 

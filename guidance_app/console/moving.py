@@ -128,6 +128,7 @@ class ClientScene:
         palette = self._palette
         return {
             "edge": palette.lifted_edge,
+            "off": palette.stale,
             "arc": palette.predicted,
             "ghost": palette.predicted,
             "hollow": palette.stale,
@@ -207,8 +208,11 @@ class ClientScene:
                 hollow_strokes(self._job.tractor, self._job.implement, place) if shown.heading_known else ring_strokes()
             )
             self._assign("hollow", None if solid else outline)
-        if self._changed("edge", (solid, place, snapshot.working)):
-            self._assign("edge", working_edge(self._job.implement, place) if solid else None)
+        if self._changed("edge", (solid, place, snapshot.working, snapshot.sections)):
+            edge = working_edge(self._job.implement, place)
+            on = np.resize(np.array(snapshot.sections, dtype=bool), len(edge))
+            self._assign("edge", edge[on] if solid else None)
+            self._assign("off", edge[~on] if solid else None)
             colour = self._palette.working_edge if snapshot.working else self._palette.lifted_edge
             self._lines["edge"].colors = np.array(flat_source(colour), dtype=np.uint8)
 
@@ -306,6 +310,7 @@ class ClientScene:
 
 _LINES = (
     ("edge", f"{HERE}/edge", 6.0),
+    ("off", f"{HERE}/off", 2.0),
     ("arc", f"{HERE}/arc", 4.0),
     ("ghost", f"{HERE}/ghost", 2.5),
     ("hollow", f"{HERE}/hollow", 3.0),

@@ -24,8 +24,10 @@ __all__ = [
     "Followed",
     "Shown",
     "buttons",
+    "note_html",
     "notice_html",
     "notice_line_html",
+    "progress_html",
     "rows_html",
     "tiles_html",
     "words_html",
@@ -48,6 +50,9 @@ STYLE = """<style>
 .g-notice{margin:.1em .6em .45em;padding:.3em .6em;font-size:.66em;line-height:1.3;border-radius:.3em;
  border-left:.25em solid #f08c00;background:rgba(240,140,0,.13)}
 .g-line .g-notice{margin:0 .9em .25em;padding:.05em .6em;white-space:nowrap;overflow:hidden;text-overflow:ellipsis}
+.g-note{padding:0 1.1em .3em .75em;font-size:.72em;color:var(--mantine-color-dimmed)}
+.g-bar{margin:.3em .9em;height:.7em;border-radius:.35em;background:rgba(128,128,128,.25);overflow:hidden}
+.g-bar b{display:block;height:100%;background:#2f9e44}
 .g-rows{padding:.1em 1.1em .5em .75em;font-size:.74em;line-height:1.55;font-variant-numeric:tabular-nums}
 .g-rows div{display:flex;justify-content:space-between;gap:1em}
 .g-rows i{font-style:normal;color:var(--mantine-color-dimmed);white-space:nowrap}
@@ -80,6 +85,11 @@ def words_html(words: str, level: Level) -> str:
     return f'<div class="g-words g-{level}">{html.escape(words)}</div>'
 
 
+def note_html(words: str) -> str:
+    """One small line."""
+    return f'<div class="g-note">{html.escape(words)}</div>'
+
+
 def notice_html(notices: Iterable[str]) -> str:
     """Things to know, in boxes of their own."""
     return "".join(f'<div class="g-notice">{html.escape(one)}</div>' for one in notices)
@@ -93,6 +103,11 @@ def notice_line_html(notices: Sequence[str], words: Words) -> str:
     if len(notices) > 1:
         first = words("(1 of {count}) {notice}", count=len(notices), notice=first)
     return f'<div class="g-line">{notice_html([first])}</div>'
+
+
+def progress_html(done: float) -> str:
+    """A bar that is filled from the left by so much, 0 to 1."""
+    return f'<div class="g-bar"><b style="width:{100 * min(max(done, 0.0), 1.0):.0f}%"></b></div>'
 
 
 def rows_html(rows: Iterable[tuple[str, str]]) -> str:

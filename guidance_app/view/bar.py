@@ -17,7 +17,7 @@ from enum import StrEnum
 
 from guidance_app.documents import Settings, Units
 from guidance_app.language import Words, message, words_for
-from guidance_app.model import FixQuality, Guidance, LinkState, LinkStatus, Pose, Snapshot
+from guidance_app.model import FixQuality, Guidance, LinkState, LinkStatus, Pose, SessionState, Snapshot
 from guidance_app.view.instant import moved_right
 from guidance_app.view.units import area_text, distance_text, offset_text, speed_text, speed_unit
 
@@ -44,6 +44,8 @@ class BarState(StrEnum):
     NOT_READY = "not-ready"
     NO_DIRECTION = "no-direction"
     NO_LINE = "no-line"
+    MEASURING = "measuring"
+    FINISHED = "finished"
 
 
 REASONS = {
@@ -56,6 +58,8 @@ REASONS = {
     BarState.NOT_READY: message("finding the position"),
     BarState.NO_DIRECTION: message("direction unknown: drive 2 m"),
     BarState.NO_LINE: message("no line"),
+    BarState.MEASURING: message("measuring: stand still"),
+    BarState.FINISHED: message("the drive has ended"),
 }
 
 TROUBLES: Mapping[LinkStatus, BarState | None] = {
@@ -69,7 +73,7 @@ TROUBLES: Mapping[LinkStatus, BarState | None] = {
     LinkStatus.DOWN: BarState.DOWN,
     LinkStatus.ENDED: BarState.ENDED,
 }
-MOVING = frozenset({BarState.GUIDE, BarState.NO_LINE, BarState.NO_DIRECTION})
+MOVING = frozenset({BarState.GUIDE, BarState.NO_LINE, BarState.NO_DIRECTION, BarState.MEASURING, BarState.FINISHED})
 """States in which the pose is of now, so that the speed may be shown."""
 
 QUALITIES = {
@@ -83,6 +87,13 @@ QUALITIES = {
     FixQuality.MANUAL: message("manual"),
     FixQuality.SIMULATED: message("simulated"),
 }
+
+
+STANDING_STATES: Mapping[SessionState, BarState] = {
+    SessionState.INITIALISING: BarState.MEASURING,
+    SessionState.ENDED: BarState.FINISHED,
+}
+"""States of the drive in which nothing is guided."""
 
 
 class TurnLevel(StrEnum):
@@ -138,6 +149,7 @@ class BarView:
     area: str
     working: bool | None
     """None when the position is not of now: then nobody knows whether ground is being worked."""
+    paused: bool = False
 
 
 def bar_of(snapshot: Snapshot, now: float, settings: Settings) -> BarView:
@@ -159,6 +171,7 @@ def bar_of(snapshot: Snapshot, now: float, settings: Settings) -> BarView:
         speed="" if pose is None else speed_text(pose.speed, settings.units, words),
         area=area_text(snapshot.totals.worked, settings.units, words),
         working=None if pose is None else snapshot.working,
+        paused=snapshot.state is SessionState.PAUSED,
     )
 
 
@@ -172,6 +185,8 @@ def _state(snapshot: Snapshot, fix_age: float | None) -> BarState:
         return BarState.STALE
     if snapshot.pose is None:
         return BarState.NOT_READY
+    if snapshot.state in STANDING_STATES:
+        return STANDING_STATES[snapshot.state]
     if not snapshot.pose.heading_known:
         return BarState.NO_DIRECTION
     return BarState.NO_LINE if snapshot.guidance is None else BarState.GUIDE
@@ -313,7 +328,7 @@ def bar_json(view: BarView, sent_ms: float | None = None) -> str:
     cross-track error (mm, positive right), ``k`` lamps (positive: steer right), ``d`` number, ``p`` place of the
     prediction (thousandths), ``e`` its number, ``h`` its lean (degrees), ``n`` pass, ``v`` speed, ``f`` fix, ``c``
     area, ``w`` 1 while working, ``u`` turn (distance, seconds, level, 1 if it fits), ``m`` where the turn leads that is
-    being driven, ``r`` reason.
+    being driven, ``z`` 1 in a pause, ``r`` reason.
     """
     message: dict[str, object] = {
         "q": view.sequence,
@@ -326,6 +341,7 @@ def bar_json(view: BarView, sent_ms: float | None = None) -> str:
         "f": view.fix,
         "c": view.area,
         "w": None if view.working is None else int(view.working),
+        "z": 1 if view.paused else None,
     }
     known = {name: value for name, value in message.items() if value is not None}
     return json.dumps(known, separators=(",", ":"), ensure_ascii=False)
@@ -363,6 +379,7 @@ def page_words(words: Words, look_ahead_s: float) -> dict[str, str]:
         "tight": words("tight"),
         "working": words("working"),
         "lifted": words("implement up"),
+        "paused": words("paused"),
         "notSent": words("{file} could not be sent: too large, or the connection broke."),
     }
 

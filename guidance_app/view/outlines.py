@@ -89,7 +89,10 @@ def implement_place(snapshot: Snapshot, implement: Implement) -> Place:
 
 
 def working_edge(implement: Implement, place: Place) -> Segments:
-    """The line along which ground is worked, one stroke a section with a gap between; shape (sections, 2, 3)."""
+    """The line along which ground is worked, one stroke a section with a gap between; shape (sections, 2, 3).
+
+    The leftmost section comes first, as in ``Snapshot.sections``.
+    """
     half = implement.working_width / 2
     cuts = np.linspace(half, -half, implement.sections + 1)
     gap = min(0.12, implement.working_width / implement.sections / 8) if implement.sections > 1 else 0.0

@@ -20,11 +20,13 @@ from guidance_app.model import (
     Snapshot,
 )
 from guidance_app.view.bar import QUALITIES, STALE_AFTER_S
+from guidance_app.view.drive import Press, work_press
 from guidance_app.view.links import beside_notices
 from guidance_app.view.units import INCH, area_text, offset_text, speed_text, speed_unit
 
 __all__ = [
     "ABSENT",
+    "OFFSETS",
     "Figure",
     "InfoView",
     "Level",
@@ -39,6 +41,7 @@ __all__ = [
     "nudge_steps",
     "pass_words",
     "replay_rows",
+    "signed_text",
     "work_view",
 ]
 
@@ -69,8 +72,7 @@ class WorkView:
     figures: tuple[Figure, ...]
     fix: str
     fix_level: Level
-    working: bool
-    work_words: str
+    work: Press
     pass_words: str
     line_words: str
     notices: tuple[str, ...]
@@ -105,7 +107,7 @@ def age_words(seconds: float, words: Words) -> str:
     return words("{n} s", n=whole) if seconds < 120 else words("{n} min", n=round(seconds / 60))
 
 
-def _signed(metres: float, units: Units, words: Words) -> str:
+def signed_text(metres: float, units: Units, words: Words) -> str:
     """A sideways distance with its side in words: "4 cm right"."""
     distance = offset_text(metres, units, words)
     if distance.startswith("0 "):
@@ -134,10 +136,9 @@ def work_view(snapshot: Snapshot, now: float, units: Units, words: Words) -> Wor
         figures=figures(snapshot, units, words),
         fix=fix,
         fix_level=level,
-        working=snapshot.working,
-        work_words=words("Working · press to lift" if snapshot.working else "Lifted · press to work"),
+        work=work_press(snapshot, words),
         pass_words=pass_words(snapshot.guidance, words),
-        line_words=words("Moved {distance}", distance=_signed(line_offset(snapshot.offsets), units, words)),
+        line_words=words("Moved {distance}", distance=signed_text(line_offset(snapshot.offsets), units, words)),
         notices=(*beside_notices(snapshot, now, words), *(words.say(notice) for notice in snapshot.notices)),
     )
 
@@ -313,7 +314,7 @@ def _offsets(offsets: Iterable[OffsetRecord], units: Units, words: Words) -> str
     parts = [
         f"{words(OFFSETS[offset.kind])} {offset_text(math.hypot(offset.east, offset.north), units, words)}"
         if offset.kind in POSITION_OFFSETS
-        else f"{words(OFFSETS[offset.kind])} {_signed(offset.metres, units, words)}"
+        else f"{words(OFFSETS[offset.kind])} {signed_text(offset.metres, units, words)}"
         for offset in offsets
     ]
     return ", ".join(parts) or words("none")

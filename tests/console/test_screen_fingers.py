@@ -11,6 +11,8 @@ from support.viser_client import ViserClient, viser_client
 
 from guidance_app.documents import Settings, Units
 from guidance_app.model import (
+    BeginInitialisation,
+    BeginRollZero,
     DropOffset,
     LineHere,
     LinkState,
@@ -18,8 +20,10 @@ from guidance_app.model import (
     Nudge,
     OffsetKind,
     OffsetRecord,
+    Pause,
     ReverseDirection,
     SetLookAhead,
+    SetSection,
     SetWork,
     SetWorkMode,
     SkipPass,
@@ -28,6 +32,7 @@ from guidance_app.model import (
 )
 from guidance_app.runtime import ReplaySession
 from guidance_app.sources.file import FileLog
+from guidance_app.view.units import INCH
 
 
 @pytest.fixture
@@ -59,7 +64,15 @@ COMMANDS = [
     ("Speed", SetWorkMode(WorkMode.SPEED)),
     ("Switch", SetWorkMode(WorkMode.SWITCH)),
     ("Auto", SetWorkMode(WorkMode.AUTO)),
+    ("Pause work", Pause()),
+    ("1", SetSection(1, on=False)),
+    ("3", SetSection(3, on=False)),
+    ("Measure without a known point", BeginInitialisation()),
+    ("Begin the first drive", BeginRollZero()),
 ]
+
+HIDDEN = {"nudge", "shift", "line here", "mark", "initialisation", "Give up", "Keep it for this tractor"}
+"""Buttons that are shown only when there is something for them to do; ``test_panel_position`` presses them."""
 
 
 def test_every_button_posts_its_command(stage: Stage) -> None:
@@ -81,10 +94,11 @@ def test_quick_presses_all_count_and_in_order(stage: Stage) -> None:
 
 
 def test_no_button_is_left_without_a_test(stage: Stage) -> None:
+    of_position = HIDDEN | {"2", "I stand on this point", "Measure on this point, 10 s"}
     elsewhere = {"Driver", "Heading up", "North up", "Whole field", "Bring back", "Day", "Night", "Look ahead"}
     of_menu = {"Fields, machines, recordings", "End the drive", "No, drive on"}
     of_receiver = {"Show what it sends", "Look again", "Use this receiver", "No, keep this one"}
-    known = {words for words, _ in COMMANDS} | elsewhere | of_menu | of_receiver
+    known = {words for words, _ in COMMANDS} | elsewhere | of_menu | of_receiver | of_position
     with stage.client() as client:
         stage.tick_until(client, lambda: client.control("Working · press to lift"))
         for control in client.controls.values():
@@ -119,7 +133,7 @@ def test_units_follow_the_settings(server: viser.ViserServer) -> None:
     with stage.client() as client:
         stage.tick_until(client, lambda: "mph" in client.words() and "ac" in client.words())
         client.press("4▶")
-        stage.tick_until(client, lambda: Nudge(pytest.approx(4 * 0.0254)) in stage.session.commands)
+        stage.tick_until(client, lambda: Nudge(4 * INCH) in stage.session.commands)
 
 
 def test_words_from_outside_cannot_become_markup(stage: Stage) -> None:
@@ -204,4 +218,11 @@ def test_the_replay_panel_steers_a_recording(server: viser.ViserServer) -> None:
 def test_a_live_session_has_no_replay_panel(stage: Stage) -> None:
     with stage.client() as client:
         tabs = [one for one in client.controls.values() if "_tab_labels" in one["props"]]
-        assert [list(one["props"]["_tab_labels"]) for one in tabs][-1] == ["Work", "Views", "Info", "Receiver", "Menu"]
+        assert [list(one["props"]["_tab_labels"]) for one in tabs][-1] == [
+            "Work",
+            "Position",
+            "Views",
+            "Info",
+            "Receiver",
+            "Menu",
+        ]

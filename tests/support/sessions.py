@@ -20,6 +20,7 @@ from guidance_app.model import (
     Pass,
     Pose,
     Prediction,
+    SessionState,
     Snapshot,
     TurnGuide,
 )
@@ -78,6 +79,7 @@ def driving(
             count=24,
         ),
         working=working,
+        state=SessionState.DRIVING,
         totals=CoverageTotals(worked=34_212.0),
     )
 

@@ -24,6 +24,7 @@ from guidance_app.model import (
     Prediction,
     Segment,
     SegmentKind,
+    SessionState,
     Snapshot,
     Strip,
     Trail,
@@ -129,6 +130,9 @@ def field_snapshot(
             worked=5200.0, overlap=90.0, left=18_000.0, headland=400.0, distance=900.0, working_s=360.0
         ),
         filter_name="adaptive",
+        state=SessionState.DRIVING,
+        sections=(True, True, True),
+        pass_totals=CoverageTotals(worked=310.0, overlap=12.0, left=40.0),
     )
     return replace(snapshot, **members)
 

@@ -6,6 +6,7 @@ from guidance_app.console.panels.info import Info
 from guidance_app.console.panels.machines import Machines
 from guidance_app.console.panels.menu import Menu
 from guidance_app.console.panels.plan import Plan
+from guidance_app.console.panels.position import Position
 from guidance_app.console.panels.receiver import Receiver
 from guidance_app.console.panels.replay import Replay
 from guidance_app.console.panels.rest import Rest
@@ -23,6 +24,7 @@ HEAD: dict[Place, type[Panel]] = {Place.DRIVE: Summary, Place.SETUP: Yard}
 PANELS: dict[str, type[Panel]] = {
     "work": Work,
     "rest": Rest,
+    "position": Position,
     "views": Views,
     "replay": Replay,
     "info": Info,

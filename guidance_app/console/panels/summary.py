@@ -7,7 +7,7 @@ import viser
 from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.widgets import STYLE, Shown, notice_line_html, tiles_html, words_html
 from guidance_app.language import message
-from guidance_app.model import SetWork
+from guidance_app.view.drive import work_press
 from guidance_app.view.status import work_view
 
 __all__ = ["Summary"]
@@ -28,7 +28,9 @@ class Summary:
 
         @self._work.on_click
         async def _(_: object) -> None:
-            hands.post(SetWork(down=not hands.desk().snapshot.working))
+            command = work_press(hands.desk().snapshot, words).command
+            if command is not None:
+                hands.post(command)
 
     def show(self, desk: Desk) -> None:
         """Brings the numbers up to now."""
@@ -36,5 +38,6 @@ class Summary:
         self._notices.show(notice_line_html(view.notices, self._words))
         self._tiles.show(tiles_html(view.figures))
         self._fix.show(words_html(view.fix, view.fix_level))
-        self._work.label = view.work_words
-        self._work.color = "green" if view.working else "gray"
+        self._work.label = view.work.words
+        self._work.color = "green" if view.work.lit else "gray"
+        self._work.disabled = view.work.command is None

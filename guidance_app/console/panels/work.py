@@ -6,22 +6,29 @@ from typing import ClassVar
 import viser
 
 from guidance_app.console.desk import Desk, Hands
-from guidance_app.console.widgets import Choice, buttons
+from guidance_app.console.widgets import Choice, Shown, buttons, note_html
 from guidance_app.language import Words, message
 from guidance_app.model import (
     DropOffset,
     LineHere,
     Nudge,
     OffsetKind,
+    Pause,
+    Resume,
     ReverseDirection,
+    SetSection,
     SetWorkMode,
     SkipPass,
     TakePass,
     WorkMode,
 )
+from guidance_app.view.drive import pass_work_words, pause_press, state_words
 from guidance_app.view.status import neighbour, nudge_steps, work_view
 
 __all__ = ["Work"]
+
+IN_A_ROW = 8
+OFF_MARK = "✕ "
 
 
 def _modes(words: Words) -> dict[WorkMode, str]:
@@ -51,6 +58,16 @@ class Work:
                 (words("Skip"), lambda: post(SkipPass())),
             ),
         )
+        self._pass_work = Shown(gui)
+        self._pause = buttons(
+            gui,
+            words("Driving"),
+            (
+                (words("Pause work"), lambda: post(Pause())),
+                (words("Go on"), lambda: post(Resume())),
+            ),
+        )
+        self._pause.options = (words("Pause work"),)
         steps = nudge_steps(hands.desk().units)
         self._line = buttons(gui, words("Line"), tuple((name, partial(post, Nudge(metres))) for name, metres in steps))
         here = ((words("Here"), lambda: post(LineHere())), (words("As planned"), self._drop_offsets))
@@ -58,6 +75,8 @@ class Work:
         self._names = _modes(words)
         modes = {name: mode for mode, name in self._names.items()}
         self._mode = Choice(gui, words("Works by"), tuple(modes), lambda name: post(SetWorkMode(modes[name])))
+
+        self._sections = _Sections(gui, hands)
 
     def _take(self, step: int) -> None:
         number = neighbour(self._hands.desk().snapshot, step)
@@ -74,3 +93,44 @@ class Work:
         self._pass.label = view.pass_words
         self._line.label = view.line_words
         self._mode.show(self._names[desk.snapshot.work_mode])
+        self._pause.label = state_words(desk.snapshot.state, self._words)
+        pause = (pause_press(desk.snapshot, self._words).words,)
+        if self._pause.options != pause:
+            self._pause.options = pause
+        said = pass_work_words(desk.snapshot, desk.units, self._words)
+        self._pass_work.show(note_html(said) if said else "")
+        self._sections.show(desk)
+
+
+class _Sections:
+    """The sections of an implement that has more than one, eight in a row, from left to right."""
+
+    def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
+        self._words = words = hands.words
+        self._hands = hands
+        self._rows: list[viser.GuiButtonGroupHandle] = []
+        count = hands.house.manager.job.implement.sections
+        for first in range(1, count + 1 if count > 1 else 1, IN_A_ROW):
+            last = min(first + IN_A_ROW - 1, count)
+            row = gui.add_button_group(
+                words("Sections {first} to {last}", first=first, last=last),
+                tuple(str(number) for number in range(first, last + 1)),
+            )
+            row.on_click(self._pressed)
+            self._rows.append(row)
+
+    async def _pressed(self, event: viser.GuiEvent[viser.GuiButtonGroupHandle]) -> None:
+        number = int(event.target.value.removeprefix(OFF_MARK))
+        on = self._hands.desk().snapshot.sections
+        if number <= len(on):
+            self._hands.post(SetSection(number, on=not on[number - 1]))
+
+    def show(self, desk: Desk) -> None:
+        """Marks the sections that are switched off."""
+        on = desk.snapshot.sections
+        for place, row in enumerate(self._rows):
+            first = place * IN_A_ROW
+            marked = enumerate(on[first : first + IN_A_ROW], start=first + 1)
+            options = tuple(str(number) if one else f"{OFF_MARK}{number}" for number, one in marked)
+            if options and row.options != options:
+                row.options = options
