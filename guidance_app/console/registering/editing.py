@@ -196,7 +196,7 @@ class Editing:
         there = rings_in(frame, self._document)[corner[0]][corner[1]]
         east, north = here[0] - float(there[0]), here[1] - float(there[1])
         when = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-        reason = f"stood on corner {corner[1] + 1}"
+        reason = self._words("stood on corner {number}", number=corner[1] + 1)
         self._store(shifted(self._document, east, north, when, reason))
         self._hands.tell(
             self._words("Field shifted"),
