@@ -221,6 +221,48 @@ def test_a_file_that_is_no_field_is_refused_with_its_name(yard: Yard) -> None:
     yard.says(r"holiday\.geojson")
 
 
+def test_typed_corners_are_read_back_before_they_become_a_field(yard: Yard) -> None:
+    yard.press("Type")
+    yard.says("At least 4 corners")
+    yard.client.set(
+        "One corner a line", "47,5000 N 8,5000 E\n47,5000 N 8,5020 E\n47.5010, 8.5020\n47 30 3.6 N, 8 30 0 E"
+    )
+    yard.press("Check")
+    yard.says("latitude 47.501")
+    yard.press("Preview")
+    yard.says(r"1\.6\d ha")
+    yard.press("Store this field")
+    yard.until(lambda: "New field" in yard.names)
+
+
+def test_a_line_that_is_no_corner_is_named(yard: Yard) -> None:
+    yard.press("Type")
+    yard.says("At least 4 corners")
+    yard.client.set("One corner a line", "47.5, 8.5\n47.5, eight\n47.6, 8.6")
+    yard.press("Preview")
+    yard.says("Line 2")
+    assert yard.names == {"Sample field"}
+
+
+def test_a_list_in_metres_asks_for_its_zone_and_is_read_again(yard: Yard) -> None:
+    yard.press("File")
+    yard.until(lambda: "data-upload" in yard.client.words())
+    token = re.search(r'data-upload="([^"]+)"', yard.client.words())
+    assert token is not None
+    take = yard.house.files.taker(token[1])
+    assert take is not None
+    rows = "462300,5260900\n462500,5260900\n462500,5261100\n462300,5261100\n"
+    take("corners.csv", f"easting,northing\n{rows}".encode())
+    yard.says("What the file does not say")
+    yard.client.set("Coordinates", "UTM")
+    yard.client.set("Zone", "32")
+    yard.client.set("Use these", value=True)
+    yard.press("Read the file again")
+    yard.says(r"[34]\.\d\d ha")
+    yard.press("Store this field")
+    yard.until(lambda: len(yard.names) == 2)
+
+
 def test_a_boundary_is_driven_while_the_drive_goes_on(driven_yard: Yard) -> None:
     yard = driven_yard
     yard.press("Drive")

@@ -1,5 +1,6 @@
 """The fields panel: the list, four ways to a new field, and what can be done with one that is stored."""
 
+import mimetypes
 from collections.abc import Callable
 from typing import ClassVar
 
@@ -13,12 +14,12 @@ from guidance_app.console.registering.atelier import Atelier, Way, area_words
 from guidance_app.console.registering.by_driving import Driving
 from guidance_app.console.registering.by_file import FromFile
 from guidance_app.console.registering.by_tapping import Tapping
+from guidance_app.console.registering.by_typing import Typing
 from guidance_app.console.registering.editing import Editing
-from guidance_app.console.registering.outside import file_of
 from guidance_app.console.registering.preview import Preview
 from guidance_app.console.widgets import Shown, buttons, notice_html, rows_html
 from guidance_app.documents import FieldDocument, Operation
-from guidance_app.exchange import WRITERS
+from guidance_app.exchange import WRITERS, written_as
 from guidance_app.language import message
 from guidance_app.store import Removed, Stored
 from guidance_app.view.camera import ViewMode
@@ -29,8 +30,13 @@ __all__ = ["Fields"]
 WAYS: dict[str, Callable[[Atelier], Way]] = {
     message("Tap"): Tapping,
     message("Drive"): Driving,
+    message("Type"): Typing,
     message("File"): FromFile,
 }
+
+
+KINDS = {".zip": "Shapefile", ".xml": "ISOXML", ".geojson": "GeoJSON"}
+"""What people call a file by its ending, where that is not the ending."""
 
 
 class Fields:
@@ -154,9 +160,10 @@ class Fields:
 
     def _export_link(self, document: FieldDocument, suffix: str) -> str:
         def make() -> Download:
-            return file_of(document, suffix)
+            media_type = mimetypes.guess_type(f"field{suffix}")[0] or "application/octet-stream"
+            return Download(f"{document.name}{suffix}", media_type, written_as(suffix, document))
 
-        return link_html(self._hands.house.files.offer(make), suffix.removeprefix(".").upper())
+        return link_html(self._hands.house.files.offer(make), KINDS.get(suffix, suffix.removeprefix(".").upper()))
 
     def _show_on_map(self, document: FieldDocument) -> None:
         if self._hands.house.show_field(document):

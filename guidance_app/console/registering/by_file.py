@@ -1,12 +1,15 @@
-"""Fields from a file of another program."""
+"""Fields from a file of another program. What the file leaves open is asked, and the same bytes are read again."""
 
+from guidance_app.boundary import BoundaryError, CheckedField
 from guidance_app.console.files import upload_html
 from guidance_app.console.registering.atelier import Atelier
-from guidance_app.console.registering.outside import fields_in
-from guidance_app.console.widgets import buttons, notice_html
-from guidance_app.exchange import READERS
+from guidance_app.console.registering.choosing import SystemChoice
+from guidance_app.console.widgets import Shown, buttons, notice_html
+from guidance_app.exchange import READERS, ExchangeError, QuestionError, ReadOptions, read_fields
 
 __all__ = ["FromFile"]
+
+ARCHIVES = (".zip",)
 
 
 class FromFile:
@@ -15,20 +18,62 @@ class FromFile:
     def __init__(self, atelier: Atelier) -> None:
         self._atelier = atelier
         self._hands = atelier.hands
-        words = atelier.hands.words
+        self._words = words = atelier.hands.words
+        self._held: tuple[str, bytes] | None = None
         self._token = self._hands.house.files.awaits(self._take)
-        kinds = ", ".join(sorted(READERS))
-        atelier.gui.add_html(
-            notice_html([words("Taken: {kinds}. Nothing is stored before you have seen it.", kinds=kinds)])
+        gui = atelier.gui
+        kinds = (*sorted(READERS), *ARCHIVES)
+        gui.add_html(
+            notice_html([words("Taken: {kinds}. Nothing is stored before you have seen it.", kinds=", ".join(kinds))])
         )
-        atelier.gui.add_html(upload_html(self._token, words("Choose a file"), ",".join(sorted(READERS))))
-        buttons(atelier.gui, "", ((words("Cancel"), atelier.cancel),))
+        gui.add_html(upload_html(self._token, words("Choose a file"), ",".join(kinds)))
+        self._question = Shown(gui)
+        with gui.add_folder(words("What the file does not say"), expand_by_default=False):
+            self._choice = SystemChoice(atelier)
+            self._encoding = gui.add_text(
+                words("Encoding of names"), "", hint=words("For example cp932; empty: find out")
+            )
+            self._given = gui.add_checkbox(words("Use these"), initial_value=False)
+            self._again = gui.add_button(words("Read the file again"), color="gray", disabled=True)
+        self._choice.on_change(lambda: None)
+        buttons(gui, "", ((words("Cancel"), atelier.cancel),))
+
+        @self._again.on_click
+        async def _(_: object) -> None:
+            self._hands.later(self._read)
 
     def _take(self, name: str, content: bytes) -> None:
-        def read() -> None:
-            self._atelier.offer(fields_in(content, name), name)
+        self._held = name, content
+        self._again.disabled = False
+        self._hands.later(self._read)
 
-        self._hands.later(read)
+    def _options(self) -> ReadOptions:
+        if not self._given.value:
+            return ReadOptions()
+        return ReadOptions(
+            system=self._choice.system(),
+            order=self._choice.order,
+            encoding=self._encoding.value.strip() or None,
+            inexact=self._choice.inexact,
+        )
+
+    def _read(self) -> None:
+        if self._held is None:
+            return
+        name, content = self._held
+        try:
+            fields = read_fields(content, name, self._options())
+        except QuestionError as question:
+            if question.option == "inexact":
+                self._choice.ask_for_consent()
+            asks = self._words("Answer below under 'What the file does not say', then read it again.")
+            self._question.show(notice_html([str(question), asks]))
+            return
+        except (ExchangeError, BoundaryError) as error:
+            self._question.show(notice_html([str(error)]))
+            return
+        checked = tuple(CheckedField(one.document, one.area, one.perimeter, one.remarks) for one in fields)
+        self._atelier.offer(checked, name)
 
     def show(self) -> None:
         """Nothing here changes by itself."""
