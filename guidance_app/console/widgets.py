@@ -64,6 +64,7 @@ STYLE = """<style>
 .mantine-Slider-thumb{height:1.5rem!important;width:1rem!important;border-radius:.3rem!important}
 .mantine-Slider-trackContainer{height:1.6rem!important}
 [style*="width: 7.25em"]{width:5.2em!important}
+.mantine-Tabs-tab{padding-inline:.42em!important;font-size:.9em}
 @media(max-width:576px){[style*="width: 20em"]{width:100vw!important}
  .g-tile:nth-child(-n+4){display:none}.g-tiles{padding-bottom:.3em}}
 </style>"""

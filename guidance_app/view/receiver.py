@@ -89,10 +89,13 @@ def _fix_rows(snapshot: Snapshot, now: float, words: Words) -> tuple[tuple[str, 
 
 def _link_rows(snapshot: Snapshot, rate: float, now: float, words: Words) -> tuple[tuple[str, str], ...]:
     link = snapshot.link
-    last = ABSENT if link.last_data is None else age_words(max(now - link.last_data, 0.0), words)
+    data = ABSENT
+    if link.last_data is not None:
+        age = words("{age} old", age=age_words(max(now - link.last_data, 0.0), words))
+        data = f"{words.number(rate / 1000, 1)} kB/s · {age}"
     rows = [
         (words("Source"), link.what or ABSENT),
-        (words("Data"), f"{words.number(rate / 1000, 1)} kB/s · {words('{age} old', age=last)}"),
+        (words("Data"), data),
         (words("Sentences"), words("{count}, {rejected} rejected", count=link.sentences, rejected=link.rejected)),
     ]
     sensor = snapshot.links_beside.get(ATTITUDE)

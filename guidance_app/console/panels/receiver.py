@@ -10,7 +10,9 @@ from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.sky import SKY_STYLE, sky_svg
 from guidance_app.console.widgets import Shown, notice_html, rows_html, words_html
 from guidance_app.language import message
-from guidance_app.view.receiver import raw_text, receiver_view, sent_words
+from guidance_app.view.links import beside_notices
+from guidance_app.view.receiver import ReceiverView, raw_text, receiver_view, sent_words
+from guidance_app.view.status import Level
 
 __all__ = ["Receiver"]
 
@@ -40,6 +42,7 @@ class Receiver:
         self._round = 0
         gui.add_html(SKY_STYLE + RAW_STYLE)
         self._link = Shown(gui)
+        self._notices = Shown(gui)
         self._grid = Shown(gui)
         self._rows = Shown(gui)
         self._sky = Shown(gui)
@@ -108,13 +111,25 @@ class Receiver:
         words = self._words
         stream = self._hands.house.manager.tap.look(desk.now)
         view = receiver_view(desk.snapshot, stream.rate, desk.now, words)
-        self._link.show(f'<div class="g-long">{words_html(view.link, view.link_level)}</div>')
+        self._link.show(f'<div class="g-long">{words_html(*self._link_words(view))}</div>')
+        self._notices.show(notice_html(beside_notices(desk.snapshot, desk.now, words)))
         self._grid.show(_plain_html(view.grid))
-        self._rows.show(rows_html(view.rows))
+        self._rows.show(rows_html(view.rows) if self._in_use else "")
         self._sky.show(sky_svg(view.sky) + _plain_html(view.sky_words))
         self._raw_button.label = words("Hide what it sends" if self._raw_wanted else "Show what it sends")
         self._kinds.show(rows_html(sent_words(stream.kinds, words)) if self._raw_wanted else "")
         self._raw.show(self._raw_html(stream.lines) if self._raw_wanted else "")
+
+    @property
+    def _in_use(self) -> bool:
+        return self._hands.house.driving
+
+    def _link_words(self, view: ReceiverView) -> tuple[str, Level]:
+        if self._in_use:
+            return view.link, view.link_level
+        return self._words(
+            "No receiver is in use: choose a port or write an address, and press the green button."
+        ), "off"
 
     def _raw_html(self, lines: tuple[bytes, ...]) -> str:
         said = html.escape(raw_text(lines, LINES)) or html.escape(self._words("nothing has come yet"))
