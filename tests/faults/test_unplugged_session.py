@@ -101,8 +101,8 @@ def test_the_sensors_roll_is_in_the_pose_until_it_is_unplugged_and_again_afterwa
 
 
 def test_an_unplugged_receiver_blanks_the_bar_and_comes_back(tractor: Tractor) -> None:
-    threads = threading.active_count()
     tractor.until(rolled)
+    threads = sorted(one.name for one in threading.enumerate())
     for _ in range(10):
         tractor.receiver.unplug()
         snapshot = tractor.until(lambda one: one.link.status is LinkStatus.DOWN)
@@ -112,7 +112,7 @@ def test_an_unplugged_receiver_blanks_the_bar_and_comes_back(tractor: Tractor) -
         assert snapshot.links_beside[ATTITUDE].status is LinkStatus.ATTITUDE
         tractor.receiver.plug()
         tractor.until(lambda one: one.link.status is LinkStatus.FIX)
-    assert threading.active_count() == threads
+    assert sorted(one.name for one in threading.enumerate()) == threads
 
 
 class Scrambled:
