@@ -72,7 +72,7 @@ def open_source(uri: str, attitude: str | None = None, caster: "Caster | None" =
     if caster is None:
         return merged({RECEIVER: receiver, **beside})
     if uri.partition(":")[0].lower() not in TAKE_CORRECTIONS:
-        msg = f"'{uri}' takes no corrections: a receiver at a serial:// or tcp:// address does."
+        msg = sentence("'{uri}' takes no corrections: a receiver at a serial:// or tcp:// address does.", uri=uri)
         raise SourceError(msg)
     corrected = cast("Callable[[Source, Caster], Mapping[str, Source]]", _named("guidance_app.sources.ntrip:corrected"))
     return merged({**corrected(receiver, caster), **beside})

@@ -38,6 +38,10 @@ __all__ = ["OpenPort", "Port", "SerialSettings", "open_serial", "serial_source"]
 WRITE_S = 0.5
 UNPLUGGED = message("{path} was unplugged: plug the device in again")
 LOWEST_BAUD, HIGHEST_BAUD = 300, 4_000_000
+GATHER_S = 0.004
+SOON_ENOUGH = 64
+"""A port without a buffer of its own gives byte after byte; fewer than this wait so long for those behind them."""
+
 PAUSES = Pauses(first=0.5, longest=1.0)
 """Looking for a port costs nothing, so a device that was plugged in again is back within about a second."""
 
@@ -186,6 +190,9 @@ class _SerialLink:
         """What has come. Raises ``LinkError`` when the device is gone."""
         try:
             data = self._port.read(self._port.in_waiting or 1)
+            if data and len(data) < SOON_ENOUGH and not data.endswith(b"\n"):
+                time.sleep(GATHER_S)
+                data += self._port.read(self._port.in_waiting)
             if self._hunt is not None and self._hunt.hear(data, self._settings.clock()):
                 self._follow(self._hunt)
         except PORT_ERRORS:
