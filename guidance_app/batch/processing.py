@@ -16,7 +16,7 @@ from guidance_app.documents import Job
 from guidance_app.engine import Engine
 from guidance_app.estimation.filter import Filter, FilterSettings
 from guidance_app.geodesy import FieldFrame
-from guidance_app.model import Chunk, Event, Fix, Pose, Snapshot, SourceDown
+from guidance_app.model import Event, Fix, Pose, Snapshot, SourceDown
 
 __all__ = ["COLUMNS", "longest_sigma", "processed", "rows_of"]
 
@@ -41,27 +41,27 @@ COLUMNS = (
 
 
 def processed(
-    chunks: Iterable[Chunk],
+    events: Iterable[Event],
     job: Job,
     filter_name: str | None = None,
     settings: FilterSettings | None = None,
     estimator: Filter | None = None,
 ) -> Iterator[Snapshot]:
-    """The snapshot after each fix of a log. ``estimator`` goes before the filter's name."""
+    """The snapshot after each fix of a log's chunks or a recording's events. ``estimator`` goes before the filter."""
     engine = Engine(job, filter_name=filter_name, settings=settings, estimator=estimator)
     seen: Fix | None = None
-    for event in _with_end(chunks):
+    for event in _with_end(events):
         for snapshot in engine.steps(event):
             if snapshot.fix is not seen:
                 seen = snapshot.fix
                 yield snapshot
 
 
-def _with_end(chunks: Iterable[Chunk]) -> Iterator[Event]:
+def _with_end(events: Iterable[Event]) -> Iterator[Event]:
     arrival = 0.0
-    for chunk in chunks:
-        arrival = chunk.arrival
-        yield chunk
+    for event in events:
+        arrival = event.arrival
+        yield event
     yield SourceDown(arrival, "the log has ended", ended=True)
 
 

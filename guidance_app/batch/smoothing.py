@@ -10,7 +10,7 @@ from guidance_app.batch.processing import processed
 from guidance_app.documents import Job
 from guidance_app.estimation.filter import Filter, FilterSettings, Start
 from guidance_app.estimation.smoothing import smooth
-from guidance_app.model import Chunk, Measurement, Pose
+from guidance_app.model import Event, Measurement, Pose
 
 __all__ = ["smoothed_poses"]
 
@@ -50,9 +50,9 @@ class _Known:
         return self
 
 
-def smoothed_poses(chunks: Iterable[Chunk], job: Job, settings: FilterSettings | None = None) -> Filter:
-    """A filter that knows the smoothed pose of every epoch of a log."""
+def smoothed_poses(events: Iterable[Event], job: Job, settings: FilterSettings | None = None) -> Filter:
+    """A filter that knows the smoothed pose of every epoch of a log or recording."""
     listener = _Listener()
-    for _ in processed(chunks, job, estimator=listener):
+    for _ in processed(events, job, estimator=listener):
         pass
     return _Known({pose.t: pose for pose in smooth(listener.heard, settings)})

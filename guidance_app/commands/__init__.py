@@ -11,7 +11,7 @@ COMMANDS: Mapping[str, str] = MappingProxyType(
         "run": "drive: the console on a live receiver",
         "replay": "play a recorded drive or a receiver's log on the console",
         "inspect": "say what a receiver's log holds",
-        "process": "run a log through the engine without a screen and write a table",
+        "process": "run logs and recordings through the engine without a screen and write tables",
         "ledger": "write the sheet to hand in: what was worked where, when and how well",
         "plan": "plan a field's passes at the desk",
         "evaluate": "repeat the papers' protocols and the scenarios, beside the goals",

@@ -31,7 +31,7 @@ __all__ = [
     "job_from_options",
     "known_errors",
     "notices_of",
-    "refuse_job_options",
+    "refuse_documents",
     "replay_speed",
 ]
 
@@ -173,11 +173,11 @@ def comparison(arguments: argparse.Namespace, job: Job) -> Comparison | None:
     return made
 
 
-def refuse_job_options(arguments: argparse.Namespace, recording: Path) -> None:
-    """A recording brings its own documents and filter. Raises ``UseError`` where the command line names others."""
-    for name in ("field", "width", "filter", "settings"):
+def refuse_documents(arguments: argparse.Namespace, *others: str) -> None:
+    """A recording brings its own documents. Raises ``UseError`` where the command line names some, or ``others``."""
+    for name in ("field", "width", *others):
         if getattr(arguments, name) is not None:
-            msg = f"{recording} is a recording with its own documents and filter: leave --{name} out"
+            msg = f"a recording has its own documents and settings: leave --{name} out"
             raise UseError(msg)
 
 

@@ -14,7 +14,7 @@ from guidance_app.commands.options import (
     filter_settings,
     job_from_options,
     notices_of,
-    refuse_job_options,
+    refuse_documents,
     replay_speed,
 )
 from guidance_app.commands.serving import serve
@@ -56,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _of_recording(arguments: argparse.Namespace) -> ReplaySession:
-    refuse_job_options(arguments, arguments.log)
+    refuse_documents(arguments, "filter", "settings")
     drive = open_recording(arguments.log)
     if drive.truncated is not None:
         print(drive.truncated)
