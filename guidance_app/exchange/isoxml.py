@@ -20,7 +20,7 @@ from guidance_app.exchange.rings import polygons_of
 from guidance_app.exchange.xml_tree import Element, children, first, local_name, parsed
 from guidance_app.geodesy import FieldFrame
 
-__all__ = ["TASKDATA", "field_element", "read", "root_of", "task_data", "written"]
+__all__ = ["TASKDATA", "designator", "field_element", "read", "root_of", "task_data", "written"]
 
 TASKDATA = "TASKDATA.XML"
 BOUNDARY = "1"
@@ -228,19 +228,19 @@ def field_element(document: FieldDocument, number: int = 1) -> str:
     )
     groups = "".join(_group_text(line, place) for place, line in enumerate(document.lines, start=1))
     return (
-        f'<PFD A="PFD{number}" C={quoteattr(_limited(document.name))} D="{area}">'
+        f'<PFD A="PFD{number}" C={quoteattr(designator(document.name))} D="{area}">'
         f'<PLN A="{BOUNDARY}" C="{area}">{strings}</PLN>{groups}</PFD>'
     )
 
 
-def _limited(text: str) -> str:
+def designator(text: str) -> str:
     """At most 32 characters, as designators have in both versions."""
     return text[:32].rstrip()
 
 
 def _group_text(line: GuidanceLineDocument, number: int) -> str:
     corners = line.geometry.coordinates
-    name = quoteattr(_limited(line.name))
+    name = quoteattr(designator(line.name))
     heading = ""
     if line.type == "a-plus":
         frame = FieldFrame(corners[0][1], corners[0][0])

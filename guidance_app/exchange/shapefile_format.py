@@ -22,7 +22,7 @@ from guidance_app.exchange.files import Files
 from guidance_app.exchange.rings import polygons_of
 from guidance_app.geodesy import crs_named
 
-__all__ = ["WGS84_PRJ", "archive_of", "layer", "read", "written"]
+__all__ = ["WGS84_PRJ", "archive_of", "layer", "read", "turned", "written"]
 
 NAMES = ("name", "field_name", "fieldname", "feld", "schlag", "nom", "nombre", "label", "title", "圃場名", "名称", "id")
 """Columns that may hold the field's name, first come first served."""
@@ -70,7 +70,7 @@ def read(files: Files, options: ReadOptions) -> tuple[FieldDraft, ...]:
 
 def written(document: FieldDocument) -> bytes:
     """An archive with the boundary as one layer and, if there are any, the guidance lines as another."""
-    rings = [_turned(ring, clockwise=number == 0) for number, ring in enumerate(document.boundary.coordinates)]
+    rings = [turned(ring, clockwise=number == 0) for number, ring in enumerate(document.boundary.coordinates)]
     files = layer("field", shapefile.POLYGON, [(rings, {"name": document.name, "notes": document.notes})])
     if document.lines:
         lines = [([line.geometry.coordinates], {"name": line.name, "type": line.type}) for line in document.lines]
@@ -120,7 +120,7 @@ def _stored(value: str | float | None) -> str | float | None:
     return value
 
 
-def _turned(ring: Ring, *, clockwise: bool) -> Ring:
+def turned(ring: Ring, *, clockwise: bool) -> Ring:
     """The ring in the orientation of a shapefile: the outer one clockwise."""
     return ring if (shapefile.signed_area(ring) < 0) == clockwise else ring[::-1]
 
