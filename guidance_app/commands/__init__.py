@@ -13,6 +13,8 @@ COMMANDS: Mapping[str, str] = MappingProxyType(
         "inspect": "say what a receiver's log holds",
         "process": "run logs and recordings through the engine without a screen and write tables",
         "ledger": "write the sheet to hand in: what was worked where, when and how well",
+        "export": "write a drive for other programs",
+        "convert": "look into field files and time logs of other programs, and convert them",
         "plan": "plan a field's passes at the desk",
         "evaluate": "repeat the papers' protocols and the scenarios, beside the goals",
         "tune": "fit the filters to simulated or recorded drives",

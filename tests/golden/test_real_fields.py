@@ -11,6 +11,7 @@ from support.field_files import csv_of, shapefile_parts, zipped
 
 from guidance_app.exchange import WRITERS, ExchangeError, ImportedField, read_fields, written_as
 from guidance_app.exchange.shapefile_format import WGS84_PRJ
+from guidance_app.exchange.time_log_drive import nmea_of, read_time_log, time_log_names
 
 pytestmark = pytest.mark.real_logs
 
@@ -92,3 +93,20 @@ REASONS = (
     "km apart",
     "no position",
 )
+
+
+def test_every_real_time_log_has_the_positions_that_others_read_from_it(real_data: Path) -> None:
+    """The receiver logs beside it were made from the same files by another program."""
+    for folder in archives(real_data):
+        names = time_log_names(folder)
+        assert names
+        for name in names:
+            log = read_time_log(folder, name)
+            assert len(log.rows) > 4000
+            assert {row.working for row in log.rows} == {True, False}
+            assert log.widest == 9.0
+            other = real_data / "nmea" / folder.name / f"impl9m_{name}_7dec.nmea"
+            if other.exists():
+                theirs = [line.split(",")[1:6] for line in other.read_text().splitlines() if "GGA" in line]
+                ours = [line.split(",")[1:6] for line in nmea_of(log).decode().splitlines() if "GGA" in line]
+                assert ours == theirs

@@ -67,7 +67,10 @@ def _modules_in(package: str) -> set[str]:
         ("guidance_app.estimation.filters", set()),
         ("guidance_app.guidance.patterns", set()),
         ("guidance_app.console.panels", set()),
-        ("guidance_app.exchange", {"asking", "corner_table", "files", "rings", "time_log", "time_log_drive", "xml_tree"}),
+        (
+            "guidance_app.exchange",
+            {"asking", "corner_table", "files", "rings", "time_log", "time_log_drive", "xml_tree"},
+        ),
     ],
 )
 def test_every_plug_in_stands_in_its_folders_table(package: str, shared: set[str]) -> None:

@@ -21,7 +21,7 @@ def written(drive: DriveExport) -> bytes:
         ("skips", drive.skips, drive.skipped_area),
     ):
         if polygons:
-            geometry = {"type": "MultiPolygon", "coordinates": polygons}
+            geometry: dict[str, Any] = {"type": "MultiPolygon", "coordinates": polygons}
             features.append(_feature(kind, geometry, {"area_m2": None if area is None else round(area, 1)}))
     lines = [
         [(epoch.filtered.longitude_deg, epoch.filtered.latitude_deg) for epoch in track if epoch.filtered]
@@ -33,8 +33,8 @@ def written(drive: DriveExport) -> bytes:
     for epoch in drive.epochs:
         place = epoch.filtered or epoch.raw
         values = {name: _value(name, text) for name, text in zip(COLUMNS, cells_of(epoch), strict=True)}
-        geometry = {"type": "Point", "coordinates": (place.longitude_deg, place.latitude_deg)}
-        features.append(_feature("epoch", geometry, values))
+        point: dict[str, Any] = {"type": "Point", "coordinates": (place.longitude_deg, place.latitude_deg)}
+        features.append(_feature("epoch", point, values))
     collection = {"type": "FeatureCollection", "features": features}
     return (json.dumps(collection, ensure_ascii=False) + "\n").encode()
 
