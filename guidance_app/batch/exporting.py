@@ -32,9 +32,11 @@ SMALLEST_SKIP = 1.0
 """m2."""
 
 
-def drive_export(drive: RecordedDrive) -> DriveExport:
-    """The drive as it was, with its own documents and filter."""
-    engine = Engine(drive.job, filter_name=drive.filter_name, settings=drive.settings, notices=drive.notices)
+def drive_export(
+    drive: RecordedDrive, filter_name: str | None = None, settings: FilterSettings | None = None
+) -> DriveExport:
+    """The drive with its own documents, and its own filter unless another is named."""
+    engine = Engine(drive.job, filter_name=filter_name or drive.filter_name, settings=settings or drive.settings)
     return _gathered(drive.events, engine, drive.job, drive.name)
 
 

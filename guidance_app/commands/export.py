@@ -9,7 +9,7 @@ from guidance_app.commands.options import (
     add_job_options,
     filter_settings,
     job_from_options,
-    refuse_job_options,
+    refuse_documents,
 )
 from guidance_app.exchange.drives import DRIVE_WRITERS, DriveExport
 from guidance_app.sources.file import load_log
@@ -59,11 +59,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _of_recording(arguments: argparse.Namespace) -> DriveExport:
-    refuse_job_options(arguments, arguments.drive)
+    refuse_documents(arguments)
     drive = open_recording(arguments.drive)
     if drive.truncated is not None:
         print(drive.truncated)
-    return drive_export(drive)
+    return drive_export(drive, arguments.filter, filter_settings(arguments.settings))
 
 
 def _of_log(arguments: argparse.Namespace) -> DriveExport:
