@@ -67,9 +67,10 @@ def _modules_in(package: str) -> set[str]:
         ("guidance_app.estimation.filters", set()),
         ("guidance_app.guidance.patterns", set()),
         ("guidance_app.console.panels", set()),
+        ("guidance_app.exchange.drives", {"record"}),
         (
             "guidance_app.exchange",
-            {"asking", "corner_table", "files", "rings", "time_log", "time_log_drive", "xml_tree"},
+            {"asking", "corner_table", "drives", "files", "rings", "time_log", "time_log_drive", "xml_tree"},
         ),
     ],
 )
