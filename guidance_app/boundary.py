@@ -16,6 +16,7 @@ from pydantic import ValidationError
 
 from guidance_app.documents import MAX_VERTICES, FieldDocument, Geometry, GuidanceLineDocument, Position
 from guidance_app.geodesy import FieldFrame
+from guidance_app.language import sentence
 from guidance_app.model import FloatArray
 
 __all__ = [
@@ -111,14 +112,18 @@ def polygon_in(frame: FieldFrame, geometry: Geometry) -> shapely.Polygon:
 def checked_field(draft: FieldDraft, fallback_name: str) -> CheckedField:
     """The field of a draft, its largest part if it has several. Raises ``BoundaryError``."""
     if not draft.parts:
-        msg = "there is no polygon in it"
+        msg = sentence("there is no polygon in it")
         raise BoundaryError(msg)
     boundaries = [checked_boundary(part) for part in draft.parts]
     boundary = max(boundaries, key=lambda each: each.area)
     remarks = [*draft.remarks, *boundary.remarks]
     if len(boundaries) > 1:
         remarks.append(
-            f"the field has {len(boundaries)} parts; only the largest, {boundary.area / HECTARE:.2f} ha, is taken"
+            sentence(
+                "the field has {count} parts; only the largest, {area:.2f} ha, is taken",
+                count=len(boundaries),
+                area=boundary.area / HECTARE,
+            )
         )
     try:
         document = FieldDocument(
@@ -130,7 +135,9 @@ def checked_field(draft: FieldDraft, fallback_name: str) -> CheckedField:
         )
     except ValidationError as error:
         first = error.errors()[0]
-        msg = f"the field cannot be stored: {'.'.join(map(str, first['loc']))}: {first['msg']}"
+        msg = sentence(
+            "the field cannot be stored: {where}: {reason}", where=".".join(map(str, first["loc"])), reason=first["msg"]
+        )
         raise BoundaryError(msg) from error
     return CheckedField(document, boundary.area, boundary.perimeter, tuple(remarks))
 
@@ -142,10 +149,10 @@ def checked_boundary(rings: PolygonRings) -> CheckedBoundary:
     remarks: list[str] = []
     kept: list[FloatArray] = []
     for number, lonlat in enumerate(degrees):
-        what = "the boundary" if number == 0 else f"exclusion {number}"
+        what = sentence("the boundary") if number == 0 else sentence("exclusion {number}", number=number)
         ring = _repaired(lonlat, frame, what, remarks)
         if ring is None and number == 0:
-            msg = "the boundary has no three corners that enclose ground"
+            msg = sentence("the boundary has no three corners that enclose ground")
             raise BoundaryError(msg)
         if ring is not None:
             kept.append(ring)
@@ -161,15 +168,17 @@ def checked_boundary(rings: PolygonRings) -> CheckedBoundary:
 def _degrees(rings: PolygonRings) -> list[FloatArray]:
     """Each ring of shape (N, 2): longitude, latitude, rounded as it will be stored."""
     if not rings:
-        msg = "there is no ring in it"
+        msg = sentence("there is no ring in it")
         raise BoundaryError(msg)
     if len(rings) - 1 > MAX_EXCLUSIONS:
-        msg = f"it has {len(rings) - 1} exclusions; {MAX_EXCLUSIONS} are possible"
+        msg = sentence("it has {count} exclusions; {most} are possible", count=len(rings) - 1, most=MAX_EXCLUSIONS)
         raise BoundaryError(msg)
     arrays = []
     for ring in rings:
         if len(ring) > MAX_VERTICES - 1:
-            msg = f"a ring of it has {len(ring)} corners; {MAX_VERTICES - 1} are possible"
+            msg = sentence(
+                "a ring of it has {count} corners; {most} are possible", count=len(ring), most=MAX_VERTICES - 1
+            )
             raise BoundaryError(msg)
         for number, (longitude, latitude) in enumerate(ring, start=1):
             _check_degrees(number, longitude, latitude)
@@ -179,21 +188,26 @@ def _degrees(rings: PolygonRings) -> list[FloatArray]:
 
 def _check_degrees(number: int, longitude: float, latitude: float) -> None:
     if not (math.isfinite(longitude) and math.isfinite(latitude)):
-        msg = f"corner {number} is not a number"
+        msg = sentence("corner {number} is not a number", number=number)
         raise BoundaryError(msg)
     if abs(longitude) <= 180 and abs(latitude) <= 89:
         return
     if abs(longitude) <= 180 and abs(latitude) <= 90:
-        msg = f"corner {number} is less than a degree from a pole"
+        msg = sentence("corner {number} is less than a degree from a pole", number=number)
     elif abs(longitude) <= 89 and abs(latitude) <= 180:
-        msg = (
-            f"corner {number} has a latitude of {latitude:g} degrees, which is not on earth:"
-            " latitude and longitude look swapped"
+        msg = sentence(
+            "corner {number} has a latitude of {latitude:g} degrees, which is not on earth: latitude and "
+            "longitude look swapped",
+            number=number,
+            latitude=latitude,
         )
     else:
-        msg = (
-            f"corner {number} at {longitude:g}, {latitude:g} is not a longitude and latitude in degrees;"
-            " these look like metres, whose projection the file does not name"
+        msg = sentence(
+            "corner {number} at {longitude:g}, {latitude:g} is not a longitude and latitude in degrees; "
+            "these look like metres, whose projection the file does not name",
+            number=number,
+            longitude=longitude,
+            latitude=latitude,
         )
     raise BoundaryError(msg)
 
@@ -201,7 +215,7 @@ def _check_degrees(number: int, longitude: float, latitude: float) -> None:
 def _frame_around(lonlat: FloatArray) -> FieldFrame:
     """A frame in the middle of the box of a ring, which may lie across the 180th meridian."""
     if len(lonlat) == 0:
-        msg = "the boundary has no corner"
+        msg = sentence("the boundary has no corner")
         raise BoundaryError(msg)
     longitudes = _unwrapped(lonlat[:, 0])
     longitude = (longitudes.min() + longitudes.max()) / 2
@@ -222,22 +236,36 @@ def _repaired(lonlat: FloatArray, frame: FieldFrame, what: str, remarks: list[st
     """The ring's corners without the closing one, shape (N, 2) in degrees; None when it encloses nothing."""
     points = frame.array_from_lonlat(lonlat)
     if not np.all(np.isfinite(points)) or np.abs(points).max() > WIDEST_FIELD / 2:
-        msg = f"the corners of {what} are more than {WIDEST_FIELD / 1000:g} km apart: one of them must be wrong"
+        msg = sentence(
+            "the corners of {what} are more than {widest:g} km apart: one of them must be wrong",
+            what=what,
+            widest=WIDEST_FIELD / 1000,
+        )
         raise BoundaryError(msg)
     if len(points) > 1 and math.dist(points[0], points[-1]) < SAME_CORNER:
         keep = list(range(len(points) - 1))
     else:
         keep = list(range(len(points)))
-        remarks.append(f"{what} was open; its last corner is joined to its first")
+        remarks.append(sentence("{what} was open; its last corner is joined to its first", what=what))
     distinct = _without_repeats(points, keep)
     if len(distinct) < len(keep):
-        remarks.append(f"{what} had {len(keep) - len(distinct)} repeated corners; they are dropped")
+        remarks.append(
+            sentence(
+                "{what} had {count} repeated corners; they are dropped", what=what, count=len(keep) - len(distinct)
+            )
+        )
     pointed = _without_spikes(points, distinct)
     if len(pointed) < len(distinct):
-        remarks.append(f"{what} had spikes without width; {len(distinct) - len(pointed)} corners are dropped")
+        remarks.append(
+            sentence(
+                "{what} had spikes without width; {count} corners are dropped",
+                what=what,
+                count=len(distinct) - len(pointed),
+            )
+        )
     if len(pointed) < 3 or _is_nothing(shapely.Polygon(points[pointed])):
         if what != "the boundary":
-            remarks.append(f"{what} encloses nothing and is dropped")
+            remarks.append(sentence("{what} encloses nothing and is dropped", what=what))
         return None
     corners: FloatArray = lonlat[pointed]
     return corners
@@ -303,7 +331,7 @@ def _closed(ring: FloatArray, *, clockwise: bool) -> list[Position]:
 def _polygon(rings: list[FloatArray], frame: FieldFrame) -> shapely.Polygon:
     outer, *holes = (frame.array_from_lonlat(ring) for ring in rings)
     for number, ring in enumerate([outer, *holes]):
-        what = "the boundary" if number == 0 else f"exclusion {number}"
+        what = sentence("the boundary") if number == 0 else sentence("exclusion {number}", number=number)
         alone = shapely.Polygon(ring)
         if not alone.is_valid:
             raise BoundaryError(_crossing(alone, ring, frame, what))
@@ -312,13 +340,15 @@ def _polygon(rings: list[FloatArray], frame: FieldFrame) -> shapely.Polygon:
     for number, exclusion in enumerate(exclusions, start=1):
         if not ground.covers(exclusion):
             place = _place(exclusion.difference(ground).representative_point(), frame)
-            msg = f"exclusion {number} reaches outside the boundary at {place}: move it inside"
+            msg = sentence(
+                "exclusion {number} reaches outside the boundary at {place}: move it inside", number=number, place=place
+            )
             raise BoundaryError(msg)
     _check_apart(exclusions, frame)
     polygon = shapely.Polygon(outer, holes)
     if not polygon.is_valid:
         place = _place(_invalid_point(polygon), frame)
-        msg = f"the boundary and its exclusions cut the field apart at {place}: move one of them"
+        msg = sentence("the boundary and its exclusions cut the field apart at {place}: move one of them", place=place)
         raise BoundaryError(msg)
     return polygon
 
@@ -332,7 +362,12 @@ def _check_apart(exclusions: list[shapely.Polygon], frame: FieldFrame) -> None:
             shared = exclusions[first].intersection(exclusions[second])
             if shared.area > 0:
                 place = _place(shared.representative_point(), frame)
-                msg = f"exclusions {first + 1} and {second + 1} lie on each other at {place}: make them one"
+                msg = sentence(
+                    "exclusions {one} and {other} lie on each other at {place}: make them one",
+                    one=first + 1,
+                    other=second + 1,
+                    place=place,
+                )
                 raise BoundaryError(msg)
 
 
@@ -341,7 +376,12 @@ def _crossing(polygon: shapely.Polygon, ring: FloatArray, frame: FieldFrame, wha
     edges = shapely.linestrings(np.stack([ring, np.roll(ring, -1, axis=0)], axis=1))
     nearest = np.argsort(shapely.distance(edges, point), kind="stable")[:2]
     names = " and ".join(f"{edge + 1}-{(edge + 1) % len(ring) + 1}" for edge in sorted(nearest.tolist()))
-    return f"{what} crosses itself at {_place(point, frame)}, where the edges between corners {names} meet: move one"
+    return sentence(
+        "{what} crosses itself at {place}, where the edges between corners {names} meet: move one",
+        what=what,
+        place=_place(point, frame),
+        names=names,
+    )
 
 
 def _invalid_point(polygon: shapely.Polygon) -> shapely.Point:
@@ -353,16 +393,21 @@ def _invalid_point(polygon: shapely.Polygon) -> shapely.Point:
 
 def _place(point: shapely.Point, frame: FieldFrame) -> str:
     latitude, longitude = frame.degrees_from_east_north(point.x, point.y)
-    return f"latitude {latitude:.6f}, longitude {longitude:.6f}"
+    return sentence("latitude {latitude:.6f}, longitude {longitude:.6f}", latitude=latitude, longitude=longitude)
 
 
 def _check_size(polygon: shapely.Polygon) -> None:
     if polygon.area < SMALLEST_FIELD:
-        msg = f"a field of {polygon.area:.1f} m2 is too small; {SMALLEST_FIELD:g} m2 are the least"
+        msg = sentence(
+            "a field of {area:.1f} m2 is too small; {smallest:g} m2 are the least",
+            area=polygon.area,
+            smallest=SMALLEST_FIELD,
+        )
         raise BoundaryError(msg)
     if polygon.area > LARGEST_FIELD:
-        msg = (
-            f"a field of {polygon.area / HECTARE:,.0f} ha is too large;"
-            f" {LARGEST_FIELD / HECTARE:,.0f} ha are the most: is a corner wrong?"
+        msg = sentence(
+            "a field of {area:,.0f} ha is too large; {largest:,.0f} ha are the most: is a corner wrong?",
+            area=polygon.area / HECTARE,
+            largest=LARGEST_FIELD / HECTARE,
         )
         raise BoundaryError(msg)

@@ -9,12 +9,14 @@ words, and may be asked for the other way round. Nothing is guessed about a zone
 import math
 import re
 import unicodedata
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
 from guidance_app.geodesy import CoordinateSystem, DatumError, Projection, lonlat_from, lonlat_to
+from guidance_app.language import message, sentence
 
 __all__ = [
     "Corner",
@@ -88,6 +90,8 @@ _match_four_commas = re.compile(r"([+-]?\d+,\d+)\s*,\s*([+-]?\d+,\d+)").fullmatc
 EASTINGS = (100_000.0, 900_000.0)
 """Metres; UTM coordinates of a zone lie between."""
 NORTHINGS = (0.0, 10_000_000.0)
+SIDES: Mapping[Axis | None, str] = {"north": message("north"), "east": message("east"), None: message("open")}
+ORDERS: Mapping[Order, str] = {"north first": message("north first"), "east first": message("east first")}
 FARTHEST_X, FARTHEST_Y = 1_000_000.0, 400_000.0
 """Metres from the origin of a plane rectangular zone: Japan's zones stay well within."""
 
@@ -107,13 +111,15 @@ def read_coordinate(text: str, *, plane: bool = False) -> Spelled:
         raise CornerError(_not_a_coordinate(text))
     before, sign, degrees, minutes, seconds, after = match.groups()
     if before and after:
-        msg = f"'{text.strip()}' names its side twice, {before} and {after}"
+        msg = sentence(
+            "'{text}' names its side twice, {before} and {after}", text=text.strip(), before=before, after=after
+        )
         raise CornerError(msg)
     value = _angle([degrees, minutes, seconds], text)
     letter = before or after
     if letter is not None:
         if sign == "-":
-            msg = f"'{text.strip()}' has both a minus and a letter: use one of them"
+            msg = sentence("'{text}' has both a minus and a letter: use one of them", text=text.strip())
             raise CornerError(msg)
         axis, side = AXES[letter]
         value *= side
@@ -144,15 +150,28 @@ def corner_from_pair(
     try:
         longitude, latitude = lonlat_from(system, inexact=inexact)(np.array([[east, north]]))[0].tolist()
     except DatumError as error:
-        raise CornerError(f"{error}; confirm to take it so", inexact=error.accuracy is not None) from error
+        raise CornerError(
+            sentence("{reason}; confirm to take it so", reason=str(error)), inexact=error.accuracy is not None
+        ) from error
     if not (math.isfinite(latitude) and math.isfinite(longitude)):
-        msg = f"{north:g} north, {east:g} east is nowhere in {system.words}"
+        msg = sentence(
+            "{north:g} north, {east:g} east is nowhere in {system}", north=north, east=east, system=system.words
+        )
         raise CornerError(msg)
     if system.plane:
         x, y = ("X ", "Y ") if system.projection is Projection.PLANE_RECTANGULAR else ("", "")
-        said = f"{x}{north:.3f} m north, {y}{east:.3f} m east in {system.words}"
+        said = sentence(
+            "{x}{north:.3f} m north, {y}{east:.3f} m east in {system}",
+            x=x,
+            north=north,
+            y=y,
+            east=east,
+            system=system.words,
+        )
     else:
-        said = f"latitude {north:.9g}, longitude {east:.9g} in {system.words}"
+        said = sentence(
+            "latitude {north:.9g}, longitude {east:.9g} in {system}", north=north, east=east, system=system.words
+        )
     return Corner(latitude, longitude, said)
 
 
@@ -166,7 +185,9 @@ def corner_text(
     try:
         east, north = lonlat_to(system, inexact=inexact)(np.array([[longitude_deg, latitude_deg]]))[0].tolist()
     except DatumError as error:
-        raise CornerError(f"{error}; confirm to see it so", inexact=error.accuracy is not None) from error
+        raise CornerError(
+            sentence("{reason}; confirm to see it so", reason=str(error)), inexact=error.accuracy is not None
+        ) from error
     match system.projection:
         case Projection.PLANE_RECTANGULAR:
             return f"X {north:.3f}, Y {east:.3f}"
@@ -187,15 +208,18 @@ def _plain(text: str) -> str:
         text = text.replace(sign, meaning)
     text = unicodedata.normalize("NFKC", text).replace("−", "-").strip()
     if re.search(r"(?:^|[\d\s°'\"])O(?:[\d\s]|$)", text):
-        msg = f"in '{text[:60]}' O means east in German and west in Spanish: write E or W"
+        msg = sentence("in '{text}' O means east in German and west in Spanish: write E or W", text=text[:60])
         raise CornerError(msg)
     return text
 
 
 def _not_a_coordinate(text: str) -> str:
     if not text.strip():
-        return "a coordinate is missing"
-    return f"'{text.strip()[:60]}' is not a coordinate; write for example 38.546789, 38° 32' 48.4\" or N38 32.807"
+        return sentence("a coordinate is missing")
+    return sentence(
+        "'{text}' is not a coordinate; write for example 38.546789, 38° 32' 48.4\" or N38 32.807",
+        text=text.strip()[:60],
+    )
 
 
 def _number(text: str) -> float:
@@ -207,11 +231,13 @@ def _angle(parts: list[str | None], text: str) -> float:
     given = [part for part in parts if part is not None]
     for part in given[:-1]:
         if not part.isdigit():
-            msg = f"'{text.strip()[:60]}' has decimals before its last part: is a separator missing?"
+            msg = sentence(
+                "'{text}' has decimals before its last part: is a separator missing?", text=text.strip()[:60]
+            )
             raise CornerError(msg)
-    for part, name in zip(given[1:], ("minutes", "seconds"), strict=False):
+    for part, name in zip(given[1:], (sentence("minutes"), sentence("seconds")), strict=False):
         if _number(part) >= 60:
-            msg = f"'{text.strip()[:60]}' has {part} {name}; they go up to 59"
+            msg = sentence("'{text}' has {part} {name}; they go up to 59", text=text.strip()[:60], part=part, name=name)
             raise CornerError(msg)
     return sum(_number(part) / 60.0**place for place, part in enumerate(given))
 
@@ -252,7 +278,9 @@ def two_coordinates(text: str, *, plane: bool = False) -> tuple[str, str]:
     if len(words) in {2, 4, 6}:
         half = len(words) // 2
         return " ".join(words[:half]), " ".join(words[half:])
-    msg = f"'{text.strip()[:60]}' is not two coordinates; write them with a comma and a space, or ; between"
+    msg = sentence(
+        "'{text}' is not two coordinates; write them with a comma and a space, or ; between", text=text.strip()[:60]
+    )
     raise CornerError(msg)
 
 
@@ -275,26 +303,36 @@ def _order_of(first: Spelled, second: Spelled, system: CoordinateSystem) -> Orde
 def _check_axes(first: Spelled, second: Spelled, taken: Order) -> None:
     axes: tuple[Axis, Axis] = ("north", "east") if taken == "north first" else ("east", "north")
     if (first.axis or axes[0]) != axes[0] or (second.axis or axes[1]) != axes[1]:
-        msg = f"the letters say that the first is {first.axis or 'open'} and the second {second.axis or 'open'}"
-        raise CornerError(f"{msg}, which is not '{taken}'")
+        msg = sentence(
+            "the letters say that the first is {first} and the second {second}",
+            first=sentence(SIDES[first.axis]),
+            second=sentence(SIDES[second.axis]),
+        )
+        raise CornerError(sentence("{reason}, which is not '{taken}'", reason=msg, taken=sentence(ORDERS[taken])))
 
 
 def _check_range(north: float, east: float, system: CoordinateSystem) -> None:
     match system.projection:
         case Projection.GEOGRAPHIC if abs(north) > 90 or abs(east) > 180:
-            msg = f"latitude {north:g}, longitude {east:g} is not on earth"
+            msg = sentence("latitude {north:g}, longitude {east:g} is not on earth", north=north, east=east)
             if abs(north) <= 180 and abs(east) <= 90:
-                msg += ": the two look swapped"
+                msg = sentence("{reason}: the two look swapped", reason=msg)
             elif max(abs(north), abs(east)) > 1000:
-                msg += ": these look like metres, so choose UTM or plane rectangular"
+                msg = sentence("{reason}: these look like metres, so choose UTM or plane rectangular", reason=msg)
         case Projection.UTM if not (
             EASTINGS[0] <= east <= EASTINGS[1] and NORTHINGS[0] <= north <= NORTHINGS[1] and abs(north) + east > 1000
         ):
-            msg = f"easting {east:g} m, northing {north:g} m is outside of every UTM zone"
+            msg = sentence(
+                "easting {east:g} m, northing {north:g} m is outside of every UTM zone", east=east, north=north
+            )
             if abs(north) <= 180 and abs(east) <= 180:
-                msg += ": these look like degrees"
+                msg = sentence("{reason}: these look like degrees", reason=msg)
         case Projection.PLANE_RECTANGULAR if abs(north) > FARTHEST_X or abs(east) > FARTHEST_Y:
-            msg = f"X {north:g} m (north), Y {east:g} m (east) is outside of every plane rectangular zone"
+            msg = sentence(
+                "X {north:g} m (north), Y {east:g} m (east) is outside of every plane rectangular zone",
+                north=north,
+                east=east,
+            )
         case _:
             return
     raise CornerError(msg)

@@ -14,6 +14,7 @@ from shapely.ops import split as cut_along
 from guidance_app.boundary import BoundaryError, checked_boundary
 from guidance_app.documents import FieldDocument, Geometry, Position, ShiftRecord
 from guidance_app.geodesy import FieldFrame
+from guidance_app.language import sentence
 from guidance_app.model import FloatArray
 
 __all__ = [
@@ -77,7 +78,7 @@ def without_corner(frame: FieldFrame, document: FieldDocument, corner: Corner) -
     """The field without this corner."""
     rings = rings_in(frame, document)
     if len(rings[corner[0]]) <= 3:
-        msg = "a ring needs three corners; take the whole exclusion away instead"
+        msg = sentence("a ring needs three corners; take the whole exclusion away instead")
         raise BoundaryError(msg)
     rings[corner[0]] = np.delete(rings[corner[0]], corner[1], axis=0)
     return _with_rings(frame, document, rings)
@@ -94,7 +95,7 @@ def without_exclusion(document: FieldDocument, number: int) -> FieldDocument:
     """The field without its inner ring of this number, from 1."""
     rings = list(document.boundary.coordinates)
     if not 1 <= number < len(rings):
-        msg = f"there is no exclusion {number}; the field has {len(rings) - 1}"
+        msg = sentence("there is no exclusion {number}; the field has {count}", number=number, count=len(rings) - 1)
         raise BoundaryError(msg)
     del rings[number]
     return document.model_copy(update={"boundary": Geometry(coordinates=rings)})
@@ -110,7 +111,7 @@ def split(
         piece for piece in cut_along(polygon, _lengthened(line, polygon)).geoms if isinstance(piece, shapely.Polygon)
     ]
     if len(pieces) != 2:
-        msg = f"the line cuts the field into {len(pieces)} parts, not two: draw it elsewhere"
+        msg = sentence("the line cuts the field into {count} parts, not two: draw it elsewhere", count=len(pieces))
         raise BoundaryError(msg)
     pieces.sort(key=lambda piece: -piece.area)
     made = []
@@ -125,9 +126,10 @@ def split(
 def shifted(document: FieldDocument, east: float, north: float, when: str, reason: str) -> FieldDocument:
     """The field moved as a whole, with its lines and entrance, and the move written into it. ``when`` is ISO 8601."""
     if not (math.isfinite(east) and math.isfinite(north)) or math.hypot(east, north) > LARGEST_SHIFT:
-        msg = (
-            f"a shift of {math.hypot(east, north):.0f} m is more than {LARGEST_SHIFT:.0f} m:"
-            " is this the right corner of the right field?"
+        msg = sentence(
+            "a shift of {metres:.0f} m is more than {most:.0f} m: is this the right corner of the right field?",
+            metres=math.hypot(east, north),
+            most=LARGEST_SHIFT,
         )
         raise BoundaryError(msg)
     origin = document.boundary.coordinates[0][0]
@@ -139,7 +141,7 @@ def shifted(document: FieldDocument, east: float, north: float, when: str, reaso
 def unshifted(document: FieldDocument) -> FieldDocument:
     """The field without its last shift."""
     if not document.shifts:
-        msg = "the field has not been shifted"
+        msg = sentence("the field has not been shifted")
         raise BoundaryError(msg)
     last = document.shifts[-1]
     moved = _moved(document, last.origin, -last.east, -last.north)
@@ -176,7 +178,7 @@ def _with_rings(frame: FieldFrame, document: FieldDocument, rings: Sequence[Floa
 def _lengthened(line: Sequence[tuple[float, float]], polygon: shapely.Polygon) -> shapely.LineString:
     points = np.asarray(line, dtype=float).reshape(-1, 2)
     if len(points) < 2 or np.hypot(*(points[-1] - points[0])) < 1.0:
-        msg = "the line to cut along needs two points at least 1 m apart"
+        msg = sentence("the line to cut along needs two points at least 1 m apart")
         raise BoundaryError(msg)
     box = shapely.bounds(polygon)
     reach = 2.0 * float(np.hypot(box[2] - box[0], box[3] - box[1])) + 10.0

@@ -23,6 +23,7 @@ from pyproj import CRS, Transformer
 from pyproj.exceptions import CRSError, ProjError
 from pyproj.transformer import TransformerGroup
 
+from guidance_app.language import message, sentence
 from guidance_app.model import FloatArray
 
 __all__ = [
@@ -59,9 +60,11 @@ class FieldFrame:
     def __post_init__(self) -> None:
         """Checks the origin and builds the projection once."""
         if not (abs(self.latitude_deg) <= 89 and abs(self.longitude_deg) <= 180):
-            msg = (
-                f"{self.latitude_deg}, {self.longitude_deg} cannot be the origin of a field:"
-                " latitude within 89 and longitude within 180 degrees are needed"
+            msg = sentence(
+                "{latitude}, {longitude} cannot be the origin of a field: latitude within 89 and longitude "
+                "within 180 degrees are needed",
+                latitude=self.latitude_deg,
+                longitude=self.longitude_deg,
             )
             raise ValueError(msg)
         projection = (
@@ -75,7 +78,11 @@ class FieldFrame:
         """Metres (east, north) of a WGS 84 position. Raises ``ValueError`` beyond 100 km from the origin."""
         east, north = self._transformer.transform(longitude_deg, latitude_deg)
         if not math.hypot(east, north) <= MAX_REACH:
-            msg = f"{latitude_deg:.6f}, {longitude_deg:.6f} is more than 100 km from the field"
+            msg = sentence(
+                "{latitude:.6f}, {longitude:.6f} is more than 100 km from the field",
+                latitude=latitude_deg,
+                longitude=longitude_deg,
+            )
             raise ValueError(msg)
         return float(east), float(north)
 
@@ -149,22 +156,24 @@ class CoordinateSystem:
         """Checks that the zone belongs to the projection."""
         match self.projection:
             case Projection.GEOGRAPHIC:
-                allowed, what = range(0), ""
+                allowed, what = range(0), sentence("degrees have no zone")
             case Projection.PLANE_RECTANGULAR:
-                allowed, what = range(1, PLANE_ZONES + 1), "plane rectangular zones go from 1 to 19"
+                allowed, what = range(1, PLANE_ZONES + 1), sentence("plane rectangular zones go from 1 to 19")
             case Projection.UTM if self.datum is Datum.TOKYO:
-                allowed, what = TOKYO_UTM_ZONES, "UTM zones on the Tokyo datum go from 51 to 55"
+                allowed, what = TOKYO_UTM_ZONES, sentence("UTM zones on the Tokyo datum go from 51 to 55")
             case Projection.UTM:
-                allowed, what = range(1, 61), "UTM zones go from 1 to 60"
+                allowed, what = range(1, 61), sentence("UTM zones go from 1 to 60")
         if self.projection is Projection.GEOGRAPHIC:
             if self.zone is not None:
-                msg = f"degrees have no zone; {self.zone} was given"
+                msg = sentence("degrees have no zone; {zone} was given", zone=self.zone)
                 raise ValueError(msg)
         elif self.zone not in allowed:
-            msg = f"{what}; {'none' if self.zone is None else self.zone} was given"
+            msg = sentence(
+                "{what}; {zone} was given", what=what, zone=sentence("none") if self.zone is None else self.zone
+            )
             raise ValueError(msg)
         if self.south and (self.projection is not Projection.UTM or self.datum is Datum.TOKYO):
-            msg = "only UTM on the world datum has a southern hemisphere"
+            msg = sentence("only UTM on the world datum has a southern hemisphere")
             raise ValueError(msg)
 
     @property
@@ -177,12 +186,15 @@ class CoordinateSystem:
         """What a person calls it."""
         match self.projection:
             case Projection.GEOGRAPHIC:
-                said = "degrees"
+                said = sentence("degrees")
             case Projection.UTM:
-                said = f"UTM zone {self.zone} {'south' if self.south else 'north'}"
+                pattern = message("UTM zone {zone} south") if self.south else message("UTM zone {zone} north")
+                said = sentence(pattern, zone=self.zone)
             case Projection.PLANE_RECTANGULAR:
-                said = f"Japanese plane rectangular zone {self.zone}"
-        return f"{said}, {self.datum} datum"
+                said = sentence("Japanese plane rectangular zone {zone}", zone=self.zone)
+        if self.datum is Datum.TOKYO:
+            return sentence("{system}, tokyo datum", system=said)
+        return sentence("{system}, world datum", system=said)
 
     @property
     def epsg(self) -> int:
@@ -219,7 +231,7 @@ def crs_named(text: str) -> CRS:
     try:
         return CRS.from_user_input(text)
     except CRSError as error:
-        msg = f"the coordinate system '{' '.join(text.split())[:60]}' is not known"
+        msg = sentence("the coordinate system '{text}' is not known", text=" ".join(text.split())[:60])
         raise ValueError(msg) from error
 
 
@@ -264,12 +276,21 @@ def _transformer(crs: CRS, *, inexact: bool) -> Transformer:
     except ProjError as error:
         group = TransformerGroup(crs, "EPSG:4326", always_xy=True, allow_ballpark=False)
         if not group.transformers:
-            msg = f"'{crs.name}' cannot be turned into WGS 84 within {EXACT:g} m here, nor any worse"
+            msg = sentence(
+                "'{name}' cannot be turned into WGS 84 within {exact:g} m here, nor any worse",
+                name=crs.name,
+                exact=EXACT,
+            )
             raise DatumError(msg, None) from error
         if inexact:
             return group.transformers[0]
         accuracy = group.transformers[0].accuracy
-        msg = f"'{crs.name}' cannot be turned into WGS 84 within {EXACT:g} m here, only within {accuracy:g} m"
+        msg = sentence(
+            "'{name}' cannot be turned into WGS 84 within {exact:g} m here, only within {accuracy:g} m",
+            name=crs.name,
+            exact=EXACT,
+            accuracy=accuracy,
+        )
         raise DatumError(msg, accuracy) from error
 
 
@@ -296,9 +317,11 @@ def _to_tokyo(lonlat: FloatArray, *, inexact: bool) -> FloatArray:
 
 def _accept_without_grid(*, inexact: bool) -> None:
     if not inexact:
-        msg = (
-            f"the Tokyo datum cannot be turned into WGS 84 within {EXACT:g} m here, only within"
-            f" {TOKYO_WITHOUT_GRID:g} m: the grid of Japan is not installed (guidance-app[japan]) or ends before here"
+        msg = sentence(
+            "the Tokyo datum cannot be turned into WGS 84 within {exact:g} m here, only within "
+            "{reached:g} m: the grid of Japan is not installed (guidance-app[japan]) or ends before here",
+            exact=EXACT,
+            reached=TOKYO_WITHOUT_GRID,
         )
         raise DatumError(msg, TOKYO_WITHOUT_GRID)
 

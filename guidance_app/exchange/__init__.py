@@ -25,6 +25,7 @@ from guidance_app.exchange import (
 )
 from guidance_app.exchange.asking import ExchangeError, ImportedField, OpenQuestionError, QuestionError, ReadOptions
 from guidance_app.exchange.files import MAX_BYTES, Files, files_at, files_in
+from guidance_app.language import sentence
 
 __all__ = [
     "MAX_BYTES",
@@ -98,18 +99,18 @@ def read_fields(
     warnings of the others. Raises ``ExchangeError`` when there is none that can, ``QuestionError`` for what the file
     leaves open.
     """
-    said = str(source) if isinstance(source, Path) else (name or "the file")
+    said = str(source) if isinstance(source, Path) else (name or sentence("the file"))
     try:
         files = files_at(source) if isinstance(source, Path) else files_in(source, name or "")
         drafts = _reader_for(files)(files, options or ReadOptions())
         return _checked(drafts, files.title)
     except OpenQuestionError as question:
-        raise QuestionError(f"{said}: {question}", question.option) from question
+        raise QuestionError(sentence("{said}: {question}", said=said, question=question), question.option) from question
     except BoundaryError as error:
-        msg = f"{said}: {error}"
+        msg = sentence("{said}: {reason}", said=said, reason=str(error))
         raise ExchangeError(msg) from error
     except OSError as error:
-        msg = f"{said} cannot be read: {error.strerror or error}"
+        msg = sentence("{said} cannot be read: {reason}", said=said, reason=error.strerror or error)
         raise ExchangeError(msg) from error
 
 
@@ -126,9 +127,14 @@ def read_field(path: Path, name: str | None = None) -> FieldDocument:
         return called[0]
     names = ", ".join(each.document.name for each in fields[:5]) + (", ..." if len(fields) > 5 else "")
     if not called:
-        msg = f"{path}: no field is called '{name}'; there are {names}"
+        msg = sentence("{path}: no field is called '{name}'; there are {names}", path=path, name=name, names=names)
     else:
-        msg = f"{path}: {len(called)} fields are in it ({names}); give a file with one"
+        msg = sentence(
+            "{path}: {count} fields are in it ({names}); give a file with one",
+            path=path,
+            count=len(called),
+            names=names,
+        )
     raise ExchangeError(msg)
 
 
@@ -136,7 +142,9 @@ def written_as(ending: str, document: FieldDocument) -> bytes:
     """The field in the format of an ending, for a download. Raises ``ExchangeError``."""
     writer = WRITERS.get(ending.lower())
     if writer is None:
-        msg = f"fields are written as {', '.join(sorted(WRITERS))}, not as '{ending}'"
+        msg = sentence(
+            "fields are written as {names}, not as '{ending}'", names=", ".join(sorted(WRITERS)), ending=ending
+        )
         raise ExchangeError(msg)
     return writer(document)
 
@@ -146,12 +154,12 @@ def write_field(document: FieldDocument, path: Path) -> None:
     try:
         content = written_as(path.suffix, document)
     except ExchangeError as error:
-        msg = f"{path}: {error}"
+        msg = sentence("{path}: {reason}", path=path, reason=str(error))
         raise ExchangeError(msg) from error
     try:
         path.write_bytes(content)
     except OSError as error:
-        msg = f"{path} cannot be written: {error.strerror or error}"
+        msg = sentence("{path} cannot be written: {reason}", path=path, reason=error.strerror or error)
         raise ExchangeError(msg) from error
 
 
@@ -161,10 +169,14 @@ def _reader_for(files: Files) -> Reader:
         suffix = PurePosixPath(files.main).suffix.lower()
         reader = NAMED.get(files.main.lower()) or READERS.get(suffix)
         if suffix in {".dbf", ".shx", ".prj", ".cpg"}:
-            msg = f"this is only a part of a shapefile: choose {PurePosixPath(files.main).stem}.shp"
+            msg = sentence("this is only a part of a shapefile: choose {name}.shp", name=PurePosixPath(files.main).stem)
             raise BoundaryError(msg)
         if reader is None:
-            msg = f"fields are read from {', '.join(sorted(READERS))}, .zip and folders, not from '{suffix}'"
+            msg = sentence(
+                "fields are read from {names}, .zip and folders, not from '{suffix}'",
+                names=", ".join(sorted(READERS)),
+                suffix=suffix,
+            )
             raise BoundaryError(msg)
         return reader
     for mark, reader in IN_FOLDERS:
@@ -176,8 +188,9 @@ def _reader_for(files: Files) -> Reader:
         if files.ending(ending):
             return _each_of(ending)
     kinds = sorted({PurePosixPath(one).suffix.lower() or "files without an ending" for one in files.names})
-    msg = f"no file that holds fields is in it, only {', '.join(kinds[:6])}" if kinds else "it holds no file at all"
-    raise BoundaryError(msg)
+    if not kinds:
+        raise BoundaryError(sentence("it holds no file at all"))
+    raise BoundaryError(sentence("no file that holds fields is in it, only {names}", names=", ".join(kinds[:6])))
 
 
 def _each_of(ending: str) -> Reader:
@@ -231,7 +244,10 @@ def _parts(draft: FieldDraft) -> list[FieldDraft]:
             draft,
             name=None if draft.name is None else f"{draft.name[:100]} ({number})",
             parts=(part,),
-            remarks=(*draft.remarks, f"the field has {many} parts, each of which becomes a field of its own"),
+            remarks=(
+                *draft.remarks,
+                sentence("the field has {count} parts, each of which becomes a field of its own", count=many),
+            ),
         )
         for number, part in enumerate(draft.parts, start=1)
     ]

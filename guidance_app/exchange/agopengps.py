@@ -15,6 +15,7 @@ from guidance_app.documents import GuidanceLineDocument, LineGeometry, Position
 from guidance_app.exchange.asking import ReadOptions
 from guidance_app.exchange.files import Files
 from guidance_app.exchange.rings import closed
+from guidance_app.language import sentence
 
 __all__ = ["MARKS", "read"]
 
@@ -31,13 +32,15 @@ def read(files: Files, options: ReadOptions) -> tuple[FieldDraft, ...]:  # noqa:
     """The field of the folder. Raises ``BoundaryError``."""
     about = files.called("Field.txt")
     if about is None:
-        msg = "there is no Field.txt beside the boundary: choose the whole folder of the field, or pack it into a .zip"
+        msg = sentence(
+            "there is no Field.txt beside the boundary: choose the whole folder of the field, or pack it into a .zip"
+        )
         raise BoundaryError(msg)
     start, name = _about(_lines_of(files, about))
     boundary = files.called("Boundary.txt")
     rings = [] if boundary is None else _rings(_lines_of(files, boundary), start)
     if not rings:
-        msg = "its Boundary.txt holds no boundary: the field was never bounded"
+        msg = sentence("its Boundary.txt holds no boundary: the field was never bounded")
         raise BoundaryError(msg)
     lines: list[GuidanceLineDocument] = []
     for file, reader in (("TrackLines.txt", _tracks), ("ABLines.txt", _ab_lines), ("CurveLines.txt", _curves)):
@@ -56,15 +59,19 @@ def _about(lines: list[str]) -> tuple[Start, str]:
     """The start fix (latitude, longitude) and the field's name."""
     after = {line.lower(): lines[number + 1] for number, line in enumerate(lines[:-1])}
     if "startfix" not in after:
-        msg = "its Field.txt has no start fix, as in the old versions that computed in UTM: save it with a newer one"
+        msg = sentence(
+            "its Field.txt has no start fix, as in the old versions that computed in UTM: save it with a newer one"
+        )
         raise BoundaryError(msg)
     offsets = _numbers(after.get("$offsets", "0,0"))
     if any(offsets):
-        msg = "its Field.txt has UTM offsets, as in the old versions that computed in UTM: save it with a newer one"
+        msg = sentence(
+            "its Field.txt has UTM offsets, as in the old versions that computed in UTM: save it with a newer one"
+        )
         raise BoundaryError(msg)
     numbers = _numbers(after["startfix"])
     if len(numbers) != 2 or abs(numbers[0]) > 89 or abs(numbers[1]) > 180:
-        msg = f"its start fix '{after['startfix'][:40]}' is not a latitude and longitude"
+        msg = sentence("its start fix '{text}' is not a latitude and longitude", text=after["startfix"][:40])
         raise BoundaryError(msg)
     name = "".join(letter if letter.isprintable() else " " for letter in after.get("$fielddir", ""))
     return (numbers[0], numbers[1]), " ".join(name.split())[:120]
@@ -88,7 +95,9 @@ def _rings(lines: list[str], start: Start) -> list[list[Position]]:
         count = int(lines[place])
         rows = lines[place + 1 : place + 1 + count]
         if len(rows) < count:
-            msg = f"its Boundary.txt ends after {len(rows)} of {count} corners: it was cut off"
+            msg = sentence(
+                "its Boundary.txt ends after {given} of {count} corners: it was cut off", given=len(rows), count=count
+            )
             raise BoundaryError(msg)
         if count >= 3:
             rings.append(closed([_position(row, start) for row in rows]))
@@ -99,7 +108,7 @@ def _rings(lines: list[str], start: Start) -> list[list[Position]]:
 def _position(row: str, start: Start) -> Position:
     numbers = _numbers(row)
     if len(numbers) < 2:
-        msg = f"the corner '{row[:40]}' is not easting and northing"
+        msg = sentence("the corner '{row}' is not easting and northing", row=row[:40])
         raise BoundaryError(msg)
     return _degrees(numbers[0], numbers[1], start)
 
@@ -168,5 +177,7 @@ def _line(name: str, kind: str, points: list[Position]) -> GuidanceLineDocument:
             {"name": cleaned or "Line", "type": kind, "geometry": LineGeometry(coordinates=points)}
         )
     except ValidationError as error:
-        msg = f"its guidance line '{cleaned}' cannot be read: {error.errors()[0]['msg']}"
+        msg = sentence(
+            "its guidance line '{name}' cannot be read: {reason}", name=cleaned, reason=error.errors()[0]["msg"]
+        )
         raise BoundaryError(msg) from error

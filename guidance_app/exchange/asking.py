@@ -15,6 +15,7 @@ from guidance_app.boundary import BoundaryError
 from guidance_app.coordinates import Order
 from guidance_app.documents import FieldDocument, Geometry, GuidanceLineDocument, Position
 from guidance_app.geodesy import CoordinateSystem, DatumError, lonlat_from
+from guidance_app.language import sentence
 
 __all__ = ["ExchangeError", "ImportedField", "OpenQuestionError", "QuestionError", "ReadOptions", "changed_from"]
 
@@ -96,8 +97,10 @@ def changed_from(system: CoordinateSystem | CRS, options: ReadOptions) -> Callab
             lonlat = lonlat_from(system, inexact=options.inexact)(np.asarray(positions, dtype=float))
         except DatumError as error:
             if error.accuracy is None:
-                raise BoundaryError(f"its coordinate system {error}") from error
-            raise OpenQuestionError(f"its coordinate system {error}; confirm to take it so", "inexact") from error
+                raise BoundaryError(sentence("its coordinate system {reason}", reason=str(error))) from error
+            raise OpenQuestionError(
+                sentence("its coordinate system {reason}; confirm to take it so", reason=str(error)), "inexact"
+            ) from error
         return [(longitude, latitude) for longitude, latitude in lonlat.tolist()]
 
     return change

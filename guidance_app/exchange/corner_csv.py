@@ -16,6 +16,7 @@ from guidance_app.exchange.asking import ReadOptions
 from guidance_app.exchange.corner_table import Cell, draft_corners
 from guidance_app.exchange.files import Files
 from guidance_app.exchange.rings import closed
+from guidance_app.language import sentence
 
 __all__ = ["read", "written"]
 
@@ -60,9 +61,9 @@ def _decoded(content: bytes, options: ReadOptions) -> str:
         except UnicodeDecodeError:
             continue
         except LookupError as error:
-            msg = f"the encoding '{encoding}' is not known"
+            msg = sentence("the encoding '{encoding}' is not known", encoding=encoding)
             raise BoundaryError(msg) from error
-    msg = "it is not text in any usual encoding"
+    msg = sentence("it is not text in any usual encoding")
     raise BoundaryError(msg)
 
 
@@ -96,7 +97,7 @@ def _cut(lines: list[str], separator: str) -> list[list[str]]:
     try:
         return [list(row) for row in csv.reader(lines, delimiter=separator)]
     except csv.Error as error:
-        msg = f"it is not a list of corners ({error})"
+        msg = sentence("it is not a list of corners ({reason})", reason=str(error))
         raise BoundaryError(msg) from error
 
 
@@ -133,7 +134,7 @@ def _own(lines: list[str]) -> tuple[FieldDraft, ...]:
             field, part, place, latitude, longitude = row
             corner = float(longitude), float(latitude)
         except ValueError as error:
-            msg = f"row {number} has not the five columns {', '.join(COLUMNS)}"
+            msg = sentence("row {number} has not the five columns {names}", number=number, names=", ".join(COLUMNS))
             raise BoundaryError(msg) from error
         if part == "boundary":
             rings.setdefault(field, {}).setdefault(place, []).append(corner)
@@ -154,5 +155,7 @@ def _line(part: str, corners: list[Position]) -> GuidanceLineDocument:
     try:
         return GuidanceLineDocument.model_validate({"name": name, "type": kind, "geometry": {"coordinates": corners}})
     except ValidationError as error:
-        msg = f"the guidance line '{part}' in it cannot be read: {error.errors()[0]['msg']}"
+        msg = sentence(
+            "the guidance line '{part}' in it cannot be read: {reason}", part=part, reason=error.errors()[0]["msg"]
+        )
         raise BoundaryError(msg) from error

@@ -19,6 +19,7 @@ from guidance_app.documents import Position
 from guidance_app.exchange.asking import OpenQuestionError, ReadOptions, changed_from
 from guidance_app.exchange.rings import closed
 from guidance_app.geodesy import CoordinateSystem, Projection
+from guidance_app.language import sentence
 
 __all__ = ["Cell", "draft_corners"]
 
@@ -69,11 +70,11 @@ def draft_corners(
     """A draft for each field of a table. Raises ``BoundaryError`` or its question."""
     filled = [list(row) for row in rows if any(_is_filled(cell) for cell in row)]
     if len(filled) > MOST_ROWS:
-        msg = f"it has {len(filled):,} rows; {MOST_ROWS:,} are the most"
+        msg = sentence("it has {count:,} rows; {most:,} are the most", count=len(filled), most=MOST_ROWS)
         raise BoundaryError(msg)
     heading, body = _heading(filled)
     if len(body) < 3:
-        msg = f"it has {len(body)} rows with coordinates; a field needs three corners"
+        msg = sentence("it has {count} rows with coordinates; a field needs three corners", count=len(body))
         raise BoundaryError(msg)
     columns = _columns(heading, body)
     reading = _Reading(options, list(said))
@@ -161,7 +162,7 @@ def _columns(heading: list[Role] | None, body: list[list[Cell]]) -> _Columns:
     if len(numeric) > 2 and _is_running(body, numeric[0]):
         numeric = numeric[1:]
     if len(numeric) < 2:
-        msg = "no two columns of coordinates are in it: head them latitude and longitude, or X and Y"
+        msg = sentence("no two columns of coordinates are in it: head them latitude and longitude, or X and Y")
         raise BoundaryError(msg)
     return _Columns(numeric[0], numeric[1], None, None)
 
@@ -177,7 +178,7 @@ def _pairs(group: list[tuple[int, list[Cell]]], columns: _Columns) -> list[tuple
         try:
             pair = _spelled(_at(row, columns.first)), _spelled(_at(row, columns.second))
         except CornerError as error:
-            msg = f"row {number}: {error}"
+            msg = sentence("row {number}: {reason}", number=number, reason=str(error))
             raise BoundaryError(msg) from error
         found.append((number, *pair))
     return found
@@ -193,12 +194,13 @@ def _system(pairs: Pairs, options: ReadOptions) -> CoordinateSystem:
         return options.system
     largest = max(max(abs(first.value), abs(second.value)) for _, first, second in pairs)
     if not math.isfinite(largest):
-        msg = "a corner in it is not a number"
+        msg = sentence("a corner in it is not a number")
         raise BoundaryError(msg)
     if largest > LARGEST_DEGREES:
-        msg = (
-            f"its coordinates go up to {largest:,.0f}, so they are metres: say in which system"
-            " (UTM with its zone, or Japanese plane rectangular with its zone)"
+        msg = sentence(
+            "its coordinates go up to {largest:,.0f}, so they are metres: say in which system (UTM with "
+            "its zone, or Japanese plane rectangular with its zone)",
+            largest=largest,
         )
         raise OpenQuestionError(msg, "system")
     return CoordinateSystem()
@@ -216,20 +218,30 @@ def _order(pairs: Pairs, columns: _Columns, system: CoordinateSystem, reading: _
     if headed is not None:
         other: Order = "east first" if headed == "north first" else "north first"
         if not fits[headed] and fits[other]:
-            reading.assumptions.append(f"the columns are headed the wrong way round and are taken as {_words(other)}")
+            reading.assumptions.append(
+                sentence("the columns are headed the wrong way round and are taken as {order}", order=_words(other))
+            )
             return other
         if columns.roles is not None and columns.roles[0] in {"x", "y"}:
-            reading.assumptions.append(f"X and Y are taken as {_words(headed)} ({system.words})")
+            reading.assumptions.append(
+                sentence("X and Y are taken as {order} ({system})", order=_words(headed), system=system.words)
+            )
         return headed
     usual: Order = "east first" if system.projection is Projection.UTM else "north first"
     if not fits[usual] and any(fits.values()):
         usual = "east first" if usual == "north first" else "north first"
-    reading.assumptions.append(f"the columns are taken as {_words(usual)} ({system.words})")
+    reading.assumptions.append(
+        sentence("the columns are taken as {order} ({system})", order=_words(usual), system=system.words)
+    )
     return usual
 
 
 def _words(order: Order) -> str:
-    return "north (latitude) first, then east" if order == "north first" else "east (longitude) first, then north"
+    return (
+        sentence("north (latitude) first, then east")
+        if order == "north first"
+        else sentence("east (longitude) first, then north")
+    )
 
 
 def _headed(columns: _Columns, system: CoordinateSystem) -> Order | None:
@@ -258,7 +270,7 @@ def _positions(pairs: Pairs, system: CoordinateSystem, order: Order, options: Re
         try:
             corner_from_pair(first, second, system, order=order, inexact=options.inexact)
         except CornerError as error:
-            msg = f"row {number}: {error}"
+            msg = sentence("row {number}: {reason}", number=number, reason=str(error))
             if error.inexact:
                 raise OpenQuestionError(msg, "inexact") from error
             raise BoundaryError(msg) from error

@@ -14,6 +14,7 @@ from functools import partial
 from pathlib import Path, PurePosixPath
 
 from guidance_app.boundary import BoundaryError
+from guidance_app.language import sentence
 
 __all__ = ["MAX_BYTES", "MAX_FILES", "MAX_UNPACKED", "Files", "files_at", "files_in"]
 
@@ -92,10 +93,10 @@ def files_at(path: Path) -> Files:
 
 def _check_size(content: bytes) -> None:
     if len(content) > MAX_BYTES:
-        msg = f"it is larger than {MAX_BYTES // MEGABYTE} MB, which no field is"
+        msg = sentence("it is larger than {most} MB, which no field is", most=MAX_BYTES // MEGABYTE)
         raise BoundaryError(msg)
     if not content.strip():
-        msg = "it is empty"
+        msg = sentence("it is empty")
         raise BoundaryError(msg)
 
 
@@ -115,7 +116,9 @@ def _below(folder: Path, root: Path, depth: int) -> Iterator[tuple[str, Callable
         for name in sorted(names):
             number += 1
             if number > MAX_FILES:
-                msg = f"there are more than {MAX_FILES:,} files in it: name the folder that holds the field"
+                msg = sentence(
+                    "there are more than {most:,} files in it: name the folder that holds the field", most=MAX_FILES
+                )
                 raise BoundaryError(msg)
             file = here / name
             yield file.relative_to(root).as_posix(), partial(_file_content, file)
@@ -125,10 +128,12 @@ def _file_content(path: Path) -> bytes:
     try:
         content = _bounded(path)
     except OSError as error:
-        msg = f"'{path.name}' in it cannot be read: {error.strerror or error}"
+        msg = sentence("'{name}' in it cannot be read: {reason}", name=path.name, reason=error.strerror or error)
         raise BoundaryError(msg) from error
     if len(content) > MAX_BYTES:
-        msg = f"'{path.name}' in it is larger than {MAX_BYTES // MEGABYTE} MB, which no field is"
+        msg = sentence(
+            "'{name}' in it is larger than {most} MB, which no field is", name=path.name, most=MAX_BYTES // MEGABYTE
+        )
         raise BoundaryError(msg)
     return content
 
@@ -145,15 +150,19 @@ def _members(content: bytes) -> dict[str, Callable[[], bytes]]:
     try:
         archive = zipfile.ZipFile(io.BytesIO(content))
     except (zipfile.BadZipFile, ValueError, OSError, NotImplementedError) as error:
-        msg = f"it is not a sound zip archive ({error})"
+        msg = sentence("it is not a sound zip archive ({reason})", reason=str(error))
         raise BoundaryError(msg) from error
     members = [one for one in archive.infolist() if not one.is_dir()]
     if len(members) > MAX_FILES:
-        msg = f"the archive holds {len(members):,} files; {MAX_FILES:,} are the most"
+        msg = sentence("the archive holds {count:,} files; {most:,} are the most", count=len(members), most=MAX_FILES)
         raise BoundaryError(msg)
     total = sum(one.file_size for one in members)
     if total > MAX_UNPACKED:
-        msg = f"the archive unpacks to {total / MEGABYTE:,.0f} MB; {MAX_UNPACKED // MEGABYTE} MB are the most"
+        msg = sentence(
+            "the archive unpacks to {size:,.0f} MB; {most} MB are the most",
+            size=total / MEGABYTE,
+            most=MAX_UNPACKED // MEGABYTE,
+        )
         raise BoundaryError(msg)
     return {_safe_name(one): partial(_member_content, archive, one) for one in members}
 
@@ -162,7 +171,10 @@ def _safe_name(member: zipfile.ZipInfo) -> str:
     name = _real_name(member).replace("\\", "/")
     path = PurePosixPath(name)
     if path.is_absolute() or ".." in path.parts or (path.parts and path.parts[0].endswith(":")):
-        msg = f"the archive holds '{name[:60]}', which leads outside of it: it was not made by an honest program"
+        msg = sentence(
+            "the archive holds '{name}', which leads outside of it: it was not made by an honest program",
+            name=name[:60],
+        )
         raise BoundaryError(msg)
     return name
 
@@ -179,15 +191,21 @@ def _real_name(member: zipfile.ZipInfo) -> str:
 
 def _member_content(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> bytes:
     if member.flag_bits & ENCRYPTED:
-        msg = f"'{member.filename}' in the archive is encrypted: pack it again without a password"
+        msg = sentence("'{name}' in the archive is encrypted: pack it again without a password", name=member.filename)
         raise BoundaryError(msg)
     try:
         with archive.open(member) as file:
             content = file.read(MAX_BYTES + 1)
     except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError, RuntimeError) as error:
-        msg = f"'{member.filename}' in the archive is damaged: pack it again ({error})"
+        msg = sentence(
+            "'{name}' in the archive is damaged: pack it again ({reason})", name=member.filename, reason=str(error)
+        )
         raise BoundaryError(msg) from error
     if len(content) > MAX_BYTES:
-        msg = f"'{member.filename}' in the archive is larger than {MAX_BYTES // MEGABYTE} MB, which no field is"
+        msg = sentence(
+            "'{name}' in the archive is larger than {most} MB, which no field is",
+            name=member.filename,
+            most=MAX_BYTES // MEGABYTE,
+        )
         raise BoundaryError(msg)
     return content

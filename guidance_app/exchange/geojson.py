@@ -15,6 +15,7 @@ from guidance_app.documents import FieldDocument, GuidanceLineDocument, LineGeom
 from guidance_app.exchange.asking import ReadOptions, changed_from
 from guidance_app.exchange.files import Files
 from guidance_app.geodesy import crs_named
+from guidance_app.language import sentence
 
 __all__ = ["read", "written"]
 
@@ -33,15 +34,16 @@ def read(files: Files, options: ReadOptions) -> tuple[FieldDraft, ...]:
     others = [feature for feature in features if _kind_of(feature) not in {"Polygon", "MultiPolygon", None}]
     if not fields:
         found = sorted({str(_kind_of(feature)) for feature in others})
-        msg = "there is no polygon in it" + (f", only {', '.join(found)}" if found else "")
-        raise BoundaryError(msg)
+        if found:
+            raise BoundaryError(sentence("there is no polygon in it, only {names}", names=", ".join(found)))
+        raise BoundaryError(sentence("there is no polygon in it"))
     ours = [feature for feature in others if ROLE in _properties(feature)]
     drafts = [_draft(feature, change) for feature in fields]
     if len(drafts) == 1 and ours:
         drafts = [_with_extras(drafts[0], ours, change)]
     ignored = len(others) - (len(ours) if len(drafts) == 1 else 0)
     if ignored:
-        remark = f"{ignored} points and lines in the file are left out"
+        remark = sentence("{ignored} points and lines in the file are left out", ignored=ignored)
         drafts = [draft.remarked(remark) for draft in drafts]
     return tuple(drafts)
 
@@ -74,19 +76,19 @@ def _object(content: bytes) -> dict[str, Any]:
     except BoundaryError:
         raise
     except RecursionError as error:
-        msg = "it is nested too deeply to be GeoJSON"
+        msg = sentence("it is nested too deeply to be GeoJSON")
         raise BoundaryError(msg) from error
     except ValueError as error:
-        msg = f"it is not JSON ({error})"
+        msg = sentence("it is not JSON ({reason})", reason=str(error))
         raise BoundaryError(msg) from error
     if not isinstance(root, dict):
-        msg = "it is JSON, but not a GeoJSON object"
+        msg = sentence("it is JSON, but not a GeoJSON object")
         raise BoundaryError(msg)
     return root
 
 
 def _no_constant(text: str) -> NoReturn:
-    msg = f"it holds {text} where a number belongs"
+    msg = sentence("it holds {text} where a number belongs", text=text)
     raise BoundaryError(msg)
 
 
@@ -96,14 +98,14 @@ def _features(root: dict[str, Any]) -> list[dict[str, Any]]:
     if kind == "FeatureCollection":
         features = root.get("features")
         if not isinstance(features, list) or not all(isinstance(each, dict) for each in features):
-            msg = "its FeatureCollection has no list of features"
+            msg = sentence("its FeatureCollection has no list of features")
             raise BoundaryError(msg)
         return features
     if kind == "Feature":
         return [root]
     if kind in {"Polygon", "MultiPolygon"}:
         return [{"type": "Feature", "properties": {}, "geometry": root}]
-    msg = f"it is JSON, but not GeoJSON with a polygon (its type is {kind!r})"
+    msg = sentence("it is JSON, but not GeoJSON with a polygon (its type is {kind!r})", kind=kind)
     raise BoundaryError(msg)
 
 
@@ -115,12 +117,12 @@ def _change_of(root: dict[str, Any], options: ReadOptions) -> Change:
     properties = crs.get("properties") if isinstance(crs, dict) else None
     name = properties.get("name") if isinstance(properties, dict) else None
     if not isinstance(name, str):
-        msg = "its crs member does not name a coordinate system"
+        msg = sentence("its crs member does not name a coordinate system")
         raise BoundaryError(msg)
     try:
         system = crs_named(name)
     except ValueError as error:
-        msg = f"its coordinate system '{name[:60]}' is not known"
+        msg = sentence("its coordinate system '{name}' is not known", name=name[:60])
         raise BoundaryError(msg) from error
     return changed_from(system, options)
 
@@ -143,7 +145,7 @@ def _draft(feature: dict[str, Any], change: Change) -> FieldDraft:
     coordinates = feature["geometry"].get("coordinates")
     polygons = coordinates if _kind_of(feature) == "MultiPolygon" else [coordinates]
     if not isinstance(polygons, list) or not polygons:
-        msg = "a polygon in it has no coordinates"
+        msg = sentence("a polygon in it has no coordinates")
         raise BoundaryError(msg)
     notes = _properties(feature).get("notes")
     return FieldDraft(
@@ -165,26 +167,26 @@ def _name_of(feature: dict[str, Any]) -> str | None:
 
 def _polygon(rings: Any, change: Change) -> PolygonRings:
     if not isinstance(rings, list) or not rings:
-        msg = "a polygon in it has no rings"
+        msg = sentence("a polygon in it has no rings")
         raise BoundaryError(msg)
     return [_positions(ring, change) for ring in rings]
 
 
 def _positions(ring: Any, change: Change) -> list[Position]:
     if not isinstance(ring, list) or not ring:
-        msg = "a ring in it has no corners"
+        msg = sentence("a ring in it has no corners")
         raise BoundaryError(msg)
     return change([_numbers(corner) for corner in ring])
 
 
 def _numbers(corner: Any) -> Position:
     if not isinstance(corner, list) or len(corner) < 2 or not all(_is_number(value) for value in corner[:2]):
-        msg = f"a corner in it is {str(corner)[:40]!r}, not two numbers"
+        msg = sentence("a corner in it is {corner!r}, not two numbers", corner=str(corner)[:40])
         raise BoundaryError(msg)
     try:
         return float(corner[0]), float(corner[1])
     except OverflowError as error:
-        msg = "a corner in it is not a number of sensible size"
+        msg = sentence("a corner in it is not a number of sensible size")
         raise BoundaryError(msg) from error
 
 
@@ -206,7 +208,7 @@ def _with_extras(draft: FieldDraft, features: Sequence[dict[str, Any]], change: 
             case "entrance":
                 (entrance,) = change([_numbers(coordinates)])
             case other:
-                msg = f"a feature in it has the unknown part '{other}' of a field"
+                msg = sentence("a feature in it has the unknown part '{other}' of a field", other=other)
                 raise BoundaryError(msg)
     return draft.with_extras(lines, entrance)
 
@@ -222,5 +224,5 @@ def _line(feature: dict[str, Any], positions: list[Position]) -> GuidanceLineDoc
             }
         )
     except ValidationError as error:
-        msg = f"a guidance line in it cannot be read: {error.errors()[0]['msg']}"
+        msg = sentence("a guidance line in it cannot be read: {reason}", reason=error.errors()[0]["msg"])
         raise BoundaryError(msg) from error

@@ -9,6 +9,7 @@ from guidance_app.exchange.asking import ReadOptions
 from guidance_app.exchange.files import Files
 from guidance_app.exchange.rings import ring_of_track
 from guidance_app.exchange.xml_tree import parsed
+from guidance_app.language import sentence
 
 __all__ = ["read"]
 
@@ -20,7 +21,7 @@ def read(files: Files, options: ReadOptions) -> tuple[FieldDraft, ...]:  # noqa:
     try:
         found = gpxpy.parse(content)
     except (gpxpy.gpx.GPXException, ValueError) as error:
-        msg = f"it is not sound GPX ({error})"
+        msg = sentence("it is not sound GPX ({reason})", reason=str(error))
         raise BoundaryError(msg) from error
     tracks: list[tuple[str | None, list[Position]]] = [
         (track.name, [(point.longitude, point.latitude) for segment in track.segments for point in segment.points])
@@ -29,9 +30,10 @@ def read(files: Files, options: ReadOptions) -> tuple[FieldDraft, ...]:  # noqa:
     tracks += [(route.name, [(point.longitude, point.latitude) for point in route.points]) for route in found.routes]
     tracks = [(name, points) for name, points in tracks if points]
     if not tracks:
-        waypoints = len(found.waypoints)
-        msg = "there is no track in it" + (f", only {waypoints} single points" if waypoints else "")
-        raise BoundaryError(msg)
+        if found.waypoints:
+            msg = sentence("there is no track in it, only {count} single points", count=len(found.waypoints))
+            raise BoundaryError(msg)
+        raise BoundaryError(sentence("there is no track in it"))
     return tuple(_draft(name, points) for name, points in tracks)
 
 
@@ -42,5 +44,5 @@ def _draft(name: str | None, points: list[Position]) -> FieldDraft:
         name=cleaned or None,
         parts=([ring],),
         remarks=remarks,
-        assumptions=("the track is taken as the boundary, driven by the antenna itself",),
+        assumptions=(sentence("the track is taken as the boundary, driven by the antenna itself"),),
     )

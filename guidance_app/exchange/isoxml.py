@@ -19,6 +19,7 @@ from guidance_app.exchange.files import Files
 from guidance_app.exchange.rings import polygons_of
 from guidance_app.exchange.xml_tree import Element, children, first, local_name, parsed
 from guidance_app.geodesy import FieldFrame
+from guidance_app.language import sentence
 
 __all__ = ["TASKDATA", "designator", "field_element", "read", "root_of", "task_data", "written"]
 
@@ -42,27 +43,34 @@ def read(files: Files, options: ReadOptions) -> tuple[FieldDraft, ...]:  # noqa:
     fields = list(children(root, "PFD"))
     drafts = [draft for number, field in enumerate(fields, start=1) if (draft := _draft(field, number)) is not None]
     if not drafts:
-        without = f"; its {len(fields)} fields have no boundary" if fields else ""
-        lost = f"; {', '.join(missing)} is missing" if missing else ""
-        msg = f"there is no field with a boundary in it{without}{lost}"
-        raise BoundaryError(msg)
-    remarks = [f"{name} belongs to it and is missing" for name in missing]
+        raise BoundaryError(_nothing(len(fields), missing))
+    remarks = [sentence("{name} belongs to it and is missing", name=name) for name in missing]
     if len(drafts) < len(fields):
-        remarks.append(f"{len(fields) - len(drafts)} fields in it have no boundary and are left out")
+        remarks.append(
+            sentence("{count} fields in it have no boundary and are left out", count=len(fields) - len(drafts))
+        )
     for remark in remarks:
         drafts = [each.remarked(remark) for each in drafts]
     return tuple(drafts)
+
+
+def _nothing(fields: int, missing: list[str]) -> str:
+    """Why there is no field, and what that may have to do with."""
+    said = sentence("there is no field with a boundary in it")
+    if fields:
+        said = sentence("{reason}; its {count} fields have no boundary", reason=said, count=fields)
+    return sentence("{reason}; {names} is missing", reason=said, names=", ".join(missing)) if missing else said
 
 
 def root_of(files: Files) -> tuple[Element, list[str]]:
     """The task data with the external files' elements added, and the names of the missing ones."""
     name = files.called(TASKDATA) or files.main
     if not name:
-        msg = f"there is no {TASKDATA} in it"
+        msg = sentence("there is no {name} in it", name=TASKDATA)
         raise BoundaryError(msg)
     root = parsed(files.content(name), "ISOXML")
     if local_name(root) != "ISO11783_TaskData":
-        msg = f"it is XML, but not ISOXML (it begins with <{local_name(root)[:40]}>)"
+        msg = sentence("it is XML, but not ISOXML (it begins with <{root}>)", root=local_name(root)[:40])
         raise BoundaryError(msg)
     missing = []
     for reference in list(children(root, "XFR")):
@@ -115,12 +123,17 @@ def _draft(field: Element, number: int) -> FieldDraft | None:
     for name, ring in obstacles:
         if _is_inside(ring, outer):
             inner.append(ring)
-            said.append(f"'{_printable(name)}' inside the boundary is taken as an exclusion")
+            said.append(sentence("'{name}' inside the boundary is taken as an exclusion", name=_printable(name)))
         else:
-            remarks.append(f"'{_printable(name)}' reaches outside the boundary and is left out")
+            remarks.append(sentence("'{name}' reaches outside the boundary and is left out", name=_printable(name)))
     lines, unread = _lines(field)
     if unread:
-        remarks.append(f"{unread} guidance lines in it have no use here (spirals, or too few points) and are left out")
+        remarks.append(
+            sentence(
+                "{unread} guidance lines in it have no use here (spirals, or too few points) and are left out",
+                unread=unread,
+            )
+        )
     name = _printable(field.get("C") or field.get("B") or "") or f"Field {number}"
     return FieldDraft(
         name=name,
@@ -148,7 +161,11 @@ def _position(point: Element) -> Position:
     try:
         return float(point.get("D", "")), float(point.get("C", ""))
     except ValueError as error:
-        msg = f"a point in it has the position '{point.get('C', '')[:20]}', '{point.get('D', '')[:20]}'"
+        msg = sentence(
+            "a point in it has the position '{latitude}', '{longitude}'",
+            latitude=point.get("C", "")[:20],
+            longitude=point.get("D", "")[:20],
+        )
         raise BoundaryError(msg) from error
 
 
@@ -171,7 +188,9 @@ def _lines(field: Element) -> tuple[list[GuidanceLineDocument], int]:
                 )
             )
         except ValidationError as error:
-            msg = f"its guidance line '{name}' cannot be read: {error.errors()[0]['msg']}"
+            msg = sentence(
+                "its guidance line '{name}' cannot be read: {reason}", name=name, reason=error.errors()[0]["msg"]
+            )
             raise BoundaryError(msg) from error
     return found, unread
 
@@ -207,7 +226,11 @@ def _moved(start: Position, heading_deg: float, metres: float) -> Position:
     try:
         frame = FieldFrame(start[1], start[0])
     except ValueError as error:
-        msg = f"a guidance line in it lies at {start[1]:g}, {start[0]:g}, which is not latitude and longitude"
+        msg = sentence(
+            "a guidance line in it lies at {latitude:g}, {longitude:g}, which is not latitude and longitude",
+            latitude=start[1],
+            longitude=start[0],
+        )
         raise BoundaryError(msg) from error
     heading = math.radians(heading_deg)
     latitude, longitude = frame.degrees_from_east_north(metres * math.sin(heading), metres * math.cos(heading))

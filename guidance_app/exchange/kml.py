@@ -16,6 +16,7 @@ from guidance_app.documents import FieldDocument, GuidanceLineDocument, LineGeom
 from guidance_app.exchange.asking import ReadOptions
 from guidance_app.exchange.files import Files
 from guidance_app.exchange.xml_tree import Element, children, first, local_name, parsed, text_of
+from guidance_app.language import sentence
 
 __all__ = ["coordinates_text", "document_of", "placemark", "read", "written"]
 
@@ -27,11 +28,11 @@ def read(files: Files, options: ReadOptions) -> tuple[FieldDraft, ...]:  # noqa:
     """A draft for each placemark with a polygon, of a KML file or of an archive's. Raises ``BoundaryError``."""
     names = [files.main] if files.main else files.ending(".kml")
     if not names:
-        msg = "no .kml file is in the archive"
+        msg = sentence("no .kml file is in the archive")
         raise BoundaryError(msg)
     drafts = [draft for name in names for draft in _drafts(parsed(files.content(name), "KML"))]
     if not drafts:
-        msg = "there is no polygon in it, nor a closed path"
+        msg = sentence("there is no polygon in it, nor a closed path")
         raise BoundaryError(msg)
     return tuple(drafts)
 
@@ -149,7 +150,7 @@ def _name(mark: Element, folder: str) -> str | None:
 def _rings(polygon: Element) -> PolygonRings:
     outer = first(polygon, "outerBoundaryIs", "LinearRing")
     if outer is None:
-        msg = "a polygon in it has no outer ring"
+        msg = sentence("a polygon in it has no outer ring")
         raise BoundaryError(msg)
     inner = [ring for each in children(polygon, "innerBoundaryIs") for ring in children(each, "LinearRing")]
     return [_corners(ring) for ring in (outer, *inner)]
@@ -163,10 +164,10 @@ def _corners(element: Element) -> list[Position]:
         try:
             found.append((float(numbers[0]), float(numbers[1])))
         except ValueError as error:
-            msg = f"a corner in it is '{corner[:40]}', not two numbers"
+            msg = sentence("a corner in it is '{corner}', not two numbers", corner=corner[:40])
             raise BoundaryError(msg) from error
     if not found:
-        msg = "a ring or line in it has no corners"
+        msg = sentence("a ring or line in it has no corners")
         raise BoundaryError(msg)
     return found
 
@@ -177,7 +178,7 @@ def _paths(mark: Element, folder: str) -> list[FieldDraft]:
     for line in _geometries(mark, "LineString", "LinearRing"):
         corners = _corners(line)
         if len(corners) > 3 and (corners[0] == corners[-1] or local_name(line) == "LinearRing"):
-            said = ("there is no polygon in the file; the closed path is taken as the boundary",)
+            said = (sentence("there is no polygon in the file; the closed path is taken as the boundary"),)
             drafts.append(FieldDraft(_name(mark, folder), ([corners],), assumptions=said))
     return drafts
 
@@ -204,6 +205,6 @@ def _with_extras(draft: FieldDraft, marks: Sequence[Element]) -> FieldDraft:
                     )
                 )
             except ValidationError as error:
-                msg = f"a guidance line in it cannot be read: {error.errors()[0]['msg']}"
+                msg = sentence("a guidance line in it cannot be read: {reason}", reason=error.errors()[0]["msg"])
                 raise BoundaryError(msg) from error
     return draft.with_extras(lines, entrance)

@@ -5,6 +5,7 @@ from guidance_app.decode.decoder import Decoder
 from guidance_app.exchange.asking import ReadOptions
 from guidance_app.exchange.files import Files
 from guidance_app.exchange.rings import ring_of_track
+from guidance_app.language import sentence
 from guidance_app.model import Chunk, Fix
 
 __all__ = ["read"]
@@ -16,8 +17,8 @@ def read(files: Files, options: ReadOptions) -> tuple[FieldDraft, ...]:  # noqa:
     seen = (*decoder.feed(Chunk(0.0, files.content())), *decoder.finish(0.0))
     track = [(fix.longitude_deg, fix.latitude_deg) for fix in seen if isinstance(fix, Fix)]
     if not track:
-        msg = "it holds no position of a receiver"
+        msg = sentence("it holds no position of a receiver")
         raise BoundaryError(msg)
     ring, remarks = ring_of_track(track)
-    said = ("the track of the antenna is taken as the boundary",)
+    said = (sentence("the track of the antenna is taken as the boundary"),)
     return (FieldDraft(name=None, parts=([ring],), remarks=remarks, assumptions=said),)

@@ -12,6 +12,7 @@ import shapely
 from guidance_app.boundary import BoundaryError, PolygonRings
 from guidance_app.documents import Position
 from guidance_app.geodesy import FieldFrame
+from guidance_app.language import sentence
 from guidance_app.model import FloatArray
 
 __all__ = ["closed", "polygons_of", "ring_of_track"]
@@ -30,11 +31,11 @@ END_PART = 0.25
 def polygons_of(rings: Sequence[Sequence[Position]]) -> tuple[PolygonRings, ...]:
     """Polygons of outer ring and exclusions: a ring inside an odd number of others is an exclusion."""
     if len(rings) > MAX_RINGS:
-        msg = f"one shape in it has {len(rings):,} rings; {MAX_RINGS:,} are the most"
+        msg = sentence("one shape in it has {rings:,} rings; {most:,} are the most", rings=len(rings), most=MAX_RINGS)
         raise BoundaryError(msg)
     usable = [closed(ring) for ring in rings if len(ring) >= 3]
     if not all(math.isfinite(value) for ring in usable for corner in ring for value in corner):
-        msg = "a corner in it is not a number"
+        msg = sentence("a corner in it is not a number")
         raise BoundaryError(msg)
     shapes = [shapely.Polygon(ring) for ring in usable]
     around = [_around(number, usable, shapes) for number in range(len(usable))]
@@ -72,12 +73,16 @@ def _around(number: int, rings: list[list[Position]], shapes: list[shapely.Polyg
 def ring_of_track(track: Sequence[Position]) -> tuple[list[Position], tuple[str, ...]]:
     """The ring that was driven, with remarks. Raises ``BoundaryError`` for a track that does not come back."""
     if len(track) < 3 or not all(math.isfinite(x) and math.isfinite(y) for x, y in track):
-        msg = "the track in it has no three positions"
+        msg = sentence("the track in it has no three positions")
         raise BoundaryError(msg)
     try:
         frame = FieldFrame(track[0][1], track[0][0])
     except ValueError as error:
-        msg = f"the track in it begins at {track[0][1]:g}, {track[0][0]:g}, which is not latitude and longitude"
+        msg = sentence(
+            "the track in it begins at {latitude:g}, {longitude:g}, which is not latitude and longitude",
+            latitude=track[0][1],
+            longitude=track[0][0],
+        )
         raise BoundaryError(msg) from error
     points = frame.array_from_lonlat(track)
     kept = _stepped(points)
@@ -85,17 +90,19 @@ def ring_of_track(track: Sequence[Position]) -> tuple[list[Position], tuple[str,
     remarks: list[str] = []
     first, last = _own_crossing(driven)
     if (first, last) != (0, len(driven) - 1):
-        remarks.append("the track was driven past its beginning; what lies beyond the crossing is left out")
+        remarks.append(sentence("the track was driven past its beginning; what lies beyond the crossing is left out"))
     driven = driven[first : last + 1]
     if len(driven) < 3:
-        msg = "the track in it has no three positions apart from each other"
+        msg = sentence("the track in it has no three positions apart from each other")
         raise BoundaryError(msg)
     length = float(np.hypot(*np.diff(driven, axis=0).T).sum())
     gap = math.dist(driven[0], driven[-1])
     if gap > WIDEST_GAP * length:
-        msg = (
-            f"the track in it does not come back to where it began: its ends are {gap:,.0f} m apart"
-            f" after {length:,.0f} m; drive round the field once"
+        msg = sentence(
+            "the track in it does not come back to where it began: its ends are {gap:,.0f} m apart after "
+            "{length:,.0f} m; drive round the field once",
+            gap=gap,
+            length=length,
         )
         raise BoundaryError(msg)
     chosen = kept[first : last + 1]

@@ -21,6 +21,7 @@ from guidance_app.exchange.asking import OpenQuestionError, ReadOptions, changed
 from guidance_app.exchange.files import Files
 from guidance_app.exchange.rings import polygons_of
 from guidance_app.geodesy import crs_named
+from guidance_app.language import sentence
 
 __all__ = ["WGS84_PRJ", "archive_of", "layer", "read", "turned", "written"]
 
@@ -49,12 +50,12 @@ def read(files: Files, options: ReadOptions) -> tuple[FieldDraft, ...]:
     """A draft for each polygon shape. Raises ``BoundaryError`` or its question."""
     names = [files.main] if PurePosixPath(files.main).suffix.lower() == ".shp" else files.ending(".shp")
     if not names:
-        msg = "there is no .shp file beside it: choose the .shp, or put .shp, .dbf and .prj into one .zip"
+        msg = sentence("there is no .shp file beside it: choose the .shp, or put .shp, .dbf and .prj into one .zip")
         raise BoundaryError(msg)
     layers = [files.with_main(name) for name in names]
     polygons = [one for one in layers if _kind(one) in POLYGONS]
     if not polygons:
-        msg = "its shapes are points or lines, not polygons"
+        msg = sentence("its shapes are points or lines, not polygons")
         raise BoundaryError(msg)
     drafts = [draft for one in polygons for draft in _drafts(one, options)]
     for other in layers:
@@ -141,7 +142,7 @@ def _drafts(files: Files, options: ReadOptions) -> list[FieldDraft]:
             name = _name(record) or (f"{title} {number + 1}" if len(shapes) > 1 else title)
             drafts.append(FieldDraft(name, polygons_of(placed), notes=record.get("notes", ""), assumptions=said))
     if not drafts:
-        msg = "its shapes are empty"
+        msg = sentence("its shapes are empty")
         raise BoundaryError(msg)
     return drafts
 
@@ -151,13 +152,15 @@ def _system(files: Files, options: ReadOptions) -> "CRS":
     if beside is None:
         if options.system is not None:
             return CRS.from_epsg(options.system.epsg)
-        msg = "the .prj file is missing, so its coordinate system is not known: choose the .prj too, or say the system"
+        msg = sentence(
+            "the .prj file is missing, so its coordinate system is not known: choose the .prj too, or say the system"
+        )
         raise OpenQuestionError(msg, "system")
     text = files.content(beside).decode("utf-8-sig", errors="replace")
     try:
         return crs_named(text)
     except ValueError as error:
-        msg = f"its .prj cannot be understood: {error}"
+        msg = sentence("its .prj cannot be understood: {reason}", reason=str(error))
         raise BoundaryError(msg) from error
 
 
@@ -167,7 +170,7 @@ def _shapes(files: Files) -> list[list[Ring]]:
         with _reader(files) as reader:
             return [_rings(shape) for shape in reader.iterShapes()]
     except (shapefile.ShapefileException, struct.error, ValueError, IndexError, EOFError, KeyError) as error:
-        msg = f"it is not a sound shapefile ({error})"
+        msg = sentence("it is not a sound shapefile ({reason})", reason=str(error))
         raise BoundaryError(msg) from error
 
 
@@ -182,7 +185,7 @@ def _kind(files: Files) -> int:
         with _reader(files) as reader:
             return int(reader.shapeType)
     except (shapefile.ShapefileException, struct.error, ValueError, EOFError) as error:
-        msg = f"it is not a sound shapefile ({error})"
+        msg = sentence("it is not a sound shapefile ({reason})", reason=str(error))
         raise BoundaryError(msg) from error
 
 
@@ -220,7 +223,7 @@ def _records(files: Files, options: ReadOptions, where: Position | None) -> tupl
     """The columns of each shape as text, and in which encoding they were taken to be."""
     beside = files.beside(".dbf")
     if beside is None:
-        return [], ("the .dbf file is missing, so the fields have no names",)
+        return [], (sentence("the .dbf file is missing, so the fields have no names"),)
     content = files.content(beside)
     named = options.encoding or _named_encoding(files, content)
     japanese = where is not None and JAPAN[0] < where[0] < JAPAN[1] and JAPAN[2] < where[1] < JAPAN[3]
@@ -232,11 +235,15 @@ def _records(files: Files, options: ReadOptions, where: Position | None) -> tupl
         except UnicodeDecodeError:
             continue
         except LookupError as error:
-            msg = f"the encoding '{encoding}' of its names is not known"
+            msg = sentence("the encoding '{encoding}' of its names is not known", encoding=encoding)
             raise BoundaryError(msg) from error
         plain = all(text.isascii() for record in decoded for text in record.values())
-        return decoded, () if named or plain else (f"the names are taken as {encoding}, as the file does not say it",)
-    msg = f"its names cannot be read as {named or 'any usual encoding'}: say which encoding they have"
+        return decoded, () if named or plain else (
+            sentence("the names are taken as {encoding}, as the file does not say it", encoding=encoding),
+        )
+    msg = sentence(
+        "its names cannot be read as {encoding}: say which encoding they have", encoding=named or "any usual encoding"
+    )
     raise OpenQuestionError(msg, "encoding")
 
 
@@ -253,7 +260,7 @@ def _raw_records(content: bytes) -> list[Record]:
                 for record in reader.iterRecords()
             ]
     except (shapefile.ShapefileException, struct.error, ValueError, IndexError, EOFError) as error:
-        msg = f"its .dbf file is not sound ({error})"
+        msg = sentence("its .dbf file is not sound ({reason})", reason=str(error))
         raise BoundaryError(msg) from error
 
 

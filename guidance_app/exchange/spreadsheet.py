@@ -9,6 +9,7 @@ from guidance_app.boundary import BoundaryError, FieldDraft
 from guidance_app.exchange.asking import OpenQuestionError, ReadOptions
 from guidance_app.exchange.corner_table import Cell, draft_corners
 from guidance_app.exchange.files import MAX_UNPACKED, MEGABYTE, Files
+from guidance_app.language import sentence
 
 __all__ = ["read"]
 
@@ -23,7 +24,7 @@ def read(files: Files, options: ReadOptions) -> tuple[FieldDraft, ...]:
         workbook = CalamineWorkbook.from_filelike(io.BytesIO(content))
         sheets = [(name, _cells(workbook, name)) for name in workbook.sheet_names]
     except (CalamineError, OSError, ValueError) as error:
-        msg = f"it is not a sound spreadsheet ({error})"
+        msg = sentence("it is not a sound spreadsheet ({reason})", reason=str(error))
         raise BoundaryError(msg) from error
     reasons = []
     for name, rows in sheets:
@@ -36,7 +37,7 @@ def read(files: Files, options: ReadOptions) -> tuple[FieldDraft, ...]:
             reasons.append((rows, error))
     filled = [error for rows, error in reasons if rows]
     if not filled:
-        msg = "its sheets are empty"
+        msg = sentence("its sheets are empty")
         raise BoundaryError(msg)
     raise filled[0]
 
@@ -49,17 +50,23 @@ def _check_unpacked(content: bytes) -> None:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             total = sum(one.file_size for one in archive.infolist())
     except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
-        msg = f"it is not a sound spreadsheet ({error})"
+        msg = sentence("it is not a sound spreadsheet ({reason})", reason=str(error))
         raise BoundaryError(msg) from error
     if total > MAX_UNPACKED:
-        msg = f"the spreadsheet unpacks to {total / MEGABYTE:,.0f} MB; {MAX_UNPACKED // MEGABYTE} MB are the most"
+        msg = sentence(
+            "the spreadsheet unpacks to {size:,.0f} MB; {most} MB are the most",
+            size=total / MEGABYTE,
+            most=MAX_UNPACKED // MEGABYTE,
+        )
         raise BoundaryError(msg)
 
 
 def _cells(workbook: CalamineWorkbook, name: str) -> list[list[Cell]]:
     sheet = workbook.get_sheet_by_name(name)
     if sheet.total_height * sheet.total_width > MOST_CELLS:
-        msg = f"its sheet '{name}' has more than {MOST_CELLS:,} cells, which no list of corners has"
+        msg = sentence(
+            "its sheet '{name}' has more than {most:,} cells, which no list of corners has", name=name, most=MOST_CELLS
+        )
         raise BoundaryError(msg)
     return [[_cell(cell) for cell in row] for row in sheet.to_python(skip_empty_area=True)]
 

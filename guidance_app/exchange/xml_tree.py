@@ -7,6 +7,7 @@ from defusedxml import DefusedXmlException
 from defusedxml.ElementTree import fromstring
 
 from guidance_app.boundary import BoundaryError
+from guidance_app.language import sentence
 
 __all__ = ["Element", "children", "first", "local_name", "parsed", "text_of"]
 
@@ -19,13 +20,13 @@ def parsed(content: bytes, what: str) -> Element:
     try:
         root = fromstring(content.lstrip(b"\xef\xbb\xbf \t\r\n"), forbid_dtd=True)
     except DefusedXmlException as error:
-        msg = f"it declares a document type or entities, which no {what} needs: it is not opened"
+        msg = sentence("it declares a document type or entities, which no {what} needs: it is not opened", what=what)
         raise BoundaryError(msg) from error
     except (ParseError, ValueError, LookupError) as error:
-        msg = f"it is not sound XML, so not {what} ({error})"
+        msg = sentence("it is not sound XML, so not {what} ({reason})", what=what, reason=str(error))
         raise BoundaryError(msg) from error
     if not isinstance(root, Element) or _depth_exceeds(root, DEEPEST):
-        msg = f"it is nested too deeply to be {what}"
+        msg = sentence("it is nested too deeply to be {what}", what=what)
         raise BoundaryError(msg)
     return root
 

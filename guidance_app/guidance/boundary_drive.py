@@ -14,6 +14,7 @@ from types import MappingProxyType
 import numpy as np
 import shapely
 
+from guidance_app.language import sentence
 from guidance_app.model import FixQuality, FloatArray, Pose
 
 __all__ = ["BoundaryDrive", "DrivenEdge", "QualityGate"]
@@ -158,7 +159,11 @@ class BoundaryDrive:
     def ring(self) -> FloatArray:
         """The finished ring without its closing point, shape (N, 2), thinned to 5 cm. Raises ``ValueError``."""
         if len(self._points) < FEWEST:
-            msg = f"the drive has {len(self._points)} points; a boundary needs at least {FEWEST}: drive on"
+            msg = sentence(
+                "the drive has {count} points; a boundary needs at least {fewest}: drive on",
+                count=len(self._points),
+                fewest=FEWEST,
+            )
             raise ValueError(msg)
         points = self._without_overlap()
         line = shapely.LineString([*points, points[0]])

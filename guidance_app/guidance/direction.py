@@ -17,6 +17,7 @@ from guidance_app.angles import heading_between, wrap_2pi
 from guidance_app.documents import Direction
 from guidance_app.guidance.cells import cut, strips_over
 from guidance_app.guidance.request import LastPass, PlanError, PlanRequest
+from guidance_app.language import sentence
 from guidance_app.model import FloatArray
 
 __all__ = ["best_heading", "edge_heading", "longest_edge", "pass_heading"]
@@ -85,7 +86,7 @@ def best_heading(mainland: Sequence[Polygon], request: PlanRequest) -> float:
         pieces = cut(mainland, strips_over(mainland, float(heading), request.spacing, LastPass.OVERLAP, None))
         cuts[float(heading)] = (len(pieces), sum(piece.length for piece in pieces))
     if not cuts or not any(count for count, _ in cuts.values()):
-        msg = "the mainland is too small for a pass"
+        msg = sentence("the mainland is too small for a pass")
         raise PlanError(msg)
     fewest = min(count for count, _ in cuts.values())
     return min(

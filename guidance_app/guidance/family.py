@@ -14,6 +14,7 @@ import numpy as np
 import shapely
 
 from guidance_app.guidance.polyline import Polyline
+from guidance_app.language import sentence
 from guidance_app.model import FloatArray, Pass
 
 __all__ = [
@@ -81,7 +82,7 @@ class ParallelLines:
         """Checks spacing and points."""
         _check_spacing(self.spacing)
         if not math.dist(self.start, self.end) > 0:
-            msg = "A and B are the same point: drive on before setting B"
+            msg = sentence("A and B are the same point: drive on before setting B")
             raise GuidanceLineError(msg)
 
     def _right(self) -> tuple[float, float]:
@@ -124,7 +125,7 @@ class OffsetCurves:
         try:
             Polyline.through(self.line)
         except ValueError as error:
-            msg = f"the curve cannot be followed: {error}"
+            msg = sentence("the curve cannot be followed: {reason}", reason=str(error))
             raise GuidanceLineError(msg) from error
 
     @cached_property
@@ -168,7 +169,7 @@ class Circles:
         """Checks spacing and radius."""
         _check_spacing(self.spacing)
         if not self.radius > 0:
-            msg = "a pivot's circle needs a radius: drive away from its centre"
+            msg = sentence("a pivot's circle needs a radius: drive away from its centre")
             raise GuidanceLineError(msg)
 
     @property
@@ -199,7 +200,7 @@ class Circles:
 
 def _check_spacing(spacing: float) -> None:
     if not (math.isfinite(spacing) and spacing > 0):
-        msg = f"a swath spacing of {spacing:g} m cannot be driven: it must be more than 0"
+        msg = sentence("a swath spacing of {spacing:g} m cannot be driven: it must be more than 0", spacing=spacing)
         raise GuidanceLineError(msg)
 
 

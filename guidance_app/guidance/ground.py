@@ -6,6 +6,7 @@ from shapely import Polygon
 
 from guidance_app.guidance.clearance import parts_of
 from guidance_app.guidance.request import PlanError, PlanRequest
+from guidance_app.language import sentence
 
 __all__ = ["SMALLEST_FIELD", "ground_of"]
 
@@ -25,11 +26,11 @@ WIDEST = 1e5
 def ground_of(polygon: Polygon, request: PlanRequest) -> Polygon:
     """One polygon, outer ring counter-clockwise, without the holes that may be driven over. Raises ``PlanError``."""
     if polygon.is_empty:
-        msg = "the field has no boundary"
+        msg = sentence("the field has no boundary")
         raise PlanError(msg)
     corners = shapely.get_coordinates(polygon)
     if not (np.isfinite(corners).all() and np.abs(corners).max() < WIDEST):
-        msg = "the field's boundary has a corner that is not a place in the field"
+        msg = sentence("the field's boundary has a corner that is not a place in the field")
         raise PlanError(msg)
     holes = [ring for place, ring in enumerate(polygon.interiors) if place not in request.passable]
     ground = _largest(Polygon(polygon.exterior, holes))
@@ -41,11 +42,13 @@ def _largest(polygon: Polygon) -> Polygon:
     valid = polygon if polygon.is_valid else shapely.make_valid(polygon, method="structure")
     parts = sorted(parts_of(valid, 0.0), key=lambda part: part.area, reverse=True)
     if not parts or parts[0].area < SMALLEST_FIELD:
-        msg = f"the field of {valid.area:.1f} m2 is too small to work"
+        msg = sentence("the field of {area:.1f} m2 is too small to work", area=valid.area)
         raise PlanError(msg)
     large = [part for part in parts if part.area > max(SMALLEST_FIELD, CRUMB * parts[0].area)]
     if len(large) > 1:
         sizes = " and ".join(f"{part.area / 1e4:.2f} ha" for part in large[:3])
-        msg = f"the field is in {len(large)} parts ({sizes}): plan each as a field of its own"
+        msg = sentence(
+            "the field is in {count} parts ({sizes}): plan each as a field of its own", count=len(large), sizes=sizes
+        )
         raise PlanError(msg)
     return parts[0]

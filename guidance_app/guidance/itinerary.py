@@ -17,6 +17,7 @@ import shapely
 from guidance_app.angles import wrap_pi
 from guidance_app.guidance.family import Learner, PassFamily, drawn_line, offset_line
 from guidance_app.guidance.polyline import Polyline
+from guidance_app.language import sentence
 from guidance_app.model import FloatArray, Pass, Plan, Segment, SegmentKind
 
 __all__ = ["FamilyItinerary", "GuideLine", "Itinerary", "Path", "PlanItinerary", "PlanOrder", "passes_of"]
@@ -303,7 +304,7 @@ def _order_of(plan: Plan) -> PlanOrder:
         ways.append(_path(between))
         between = []
     if not lines:
-        msg = "the plan has no pass to drive"
+        msg = sentence("the plan has no pass to drive")
         raise ValueError(msg)
     ways.append(_path(between))
     by_number: dict[int, tuple[int, ...]] = {}

@@ -6,6 +6,7 @@ that an offset stays on the same side of the ground whichever way a pass is driv
 
 from dataclasses import dataclass, replace
 
+from guidance_app.language import sentence
 from guidance_app.model import POSITION_OFFSETS, OffsetKind, OffsetRecord
 
 __all__ = ["LineOffsets"]
@@ -32,7 +33,12 @@ class LineOffsets:
     def plus(self, kind: OffsetKind, metres: float, arrival: float) -> "LineOffsets":
         """Moved on by ``metres``. ``ValueError`` for a position offset and for what is not allowed."""
         if kind in POSITION_OFFSETS or not self.allows(metres):
-            msg = f"lines are moved by line offsets and by at most {LARGEST:g} m in all, not by {metres:g} m ({kind})"
+            msg = sentence(
+                "lines are moved by line offsets and by at most {most:g} m in all, not by {metres:g} m ({kind})",
+                most=LARGEST,
+                metres=metres,
+                kind=kind,
+            )
             raise ValueError(msg)
         before = next((record.metres for record in self.records if record.kind is kind), None)
         record = OffsetRecord(kind, arrival, (before or 0.0) + metres)

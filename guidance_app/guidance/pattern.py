@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from guidance_app.guidance.request import PlanError
+from guidance_app.language import sentence
 
 __all__ = ["OperationMethod", "PassOrder", "PatternOptions"]
 
@@ -45,7 +46,7 @@ class OperationMethod:
         except ValidationError as error:
             first = error.errors()[0]
             place = ".".join(str(part) for part in first["loc"]) or "options"
-            msg = f"method {self.name}, option {place}: {first['msg']}"
+            msg = sentence("method {name}, option {place}: {reason}", name=self.name, place=place, reason=first["msg"])
             raise PlanError(msg) from error
 
     def laps_inward(self, options: PatternOptions) -> bool:

@@ -21,6 +21,7 @@ from guidance_app.guidance.route import route
 from guidance_app.guidance.task import Task
 from guidance_app.guidance.turns import Turner
 from guidance_app.guidance.ways import Ways
+from guidance_app.language import sentence
 from guidance_app.model import FloatArray, Plan, Segment
 
 __all__ = [
@@ -66,7 +67,11 @@ def plan_on(groundwork: Groundwork, request: PlanRequest) -> Plan:
     method, options = _method(request)
     tasks = _tasks(layout, joiner, (method, options), request)
     if not tasks:
-        msg = f"a working width of {request.width:g} m is too wide for this field of {layout.ground.area / 1e4:.2f} ha"
+        msg = sentence(
+            "a working width of {width:g} m is too wide for this field of {area:.2f} ha",
+            width=request.width,
+            area=layout.ground.area / 1e4,
+        )
         raise PlanError(msg)
     segments = tuple(joiner.segments(tasks))
     return Plan(
@@ -83,7 +88,11 @@ def plan_on(groundwork: Groundwork, request: PlanRequest) -> Plan:
 def _method(request: PlanRequest) -> tuple[OperationMethod, PatternOptions]:
     method = METHODS.get(request.method.value)
     if method is None:
-        msg = f"the method '{request.method.value}' is for driving without a plan; choose {', '.join(METHODS)}"
+        msg = sentence(
+            "the method '{method}' is for driving without a plan; choose {names}",
+            method=request.method.value,
+            names=", ".join(METHODS),
+        )
         raise PlanError(msg)
     return method, method.options_from(request.options)
 
@@ -121,23 +130,33 @@ def _passes(choices: Sequence[Sequence[Run]], request: PlanRequest, start: tuple
 
 def _warnings(segments: Sequence[Segment], layout: Layout, request: PlanRequest) -> list[str]:
     """What the driver should know before he begins, a sentence each."""
-    warnings = []
+    warnings: list[str] = []
     if not layout.headland.mainland and request.method is not Method.SURROUNDING:
-        warnings.append("The turning space leaves no mainland: the field is worked in laps.")
+        warnings.append(sentence("The turning space leaves no mainland: the field is worked in laps."))
     if layout.headland.undrivable:
         warnings.append(
-            f"{layout.headland.undrivable} laps bend too tightly for a turning radius of {request.radius:g} m"
-            " and are left out."
+            sentence(
+                "{count} laps bend too tightly for a turning radius of {radius:g} m and are left out.",
+                count=layout.headland.undrivable,
+                radius=request.radius,
+            )
         )
     if request.start is not None and not layout.ground.covers(shapely.Point(request.start)):
-        warnings.append("The start lies outside the field: the plan begins at the nearest place inside.")
+        warnings.append(sentence("The start lies outside the field: the plan begins at the nearest place inside."))
     unfit = [join for join in joins_of(segments) if not all(each.fits for each in join)]
     if unfit:
         worst = max(each.missing for join in unfit for each in join)
-        warnings.append(f"{len(unfit)} turns do not fit; the worst lacks {worst:.1f} m.")
+        warnings.append(
+            sentence("{count} turns do not fit; the worst lacks {worst:.1f} m.", count=len(unfit), worst=worst)
+        )
     missed = 1 - layout.worked.intersection(layout.ground).area / layout.ground.area
     if missed > UNWORKED:
-        warnings.append(f"{100 * missed:.1f} % of the field cannot be worked with this machine inside the boundary.")
+        warnings.append(
+            sentence(
+                "{percent:.1f} % of the field cannot be worked with this machine inside the boundary.",
+                percent=100 * missed,
+            )
+        )
     return warnings
 
 

@@ -27,6 +27,7 @@ from guidance_app.guidance.task import Task
 from guidance_app.guidance.turn import Turn, leg_of
 from guidance_app.guidance.turns import Turner
 from guidance_app.guidance.ways import Ways
+from guidance_app.language import sentence
 from guidance_app.model import FloatArray, Plan, Segment, SegmentKind
 
 __all__ = ["First", "Standing", "replan"]
@@ -91,7 +92,7 @@ def replan(plan: Plan, done: Collection[int], standing: Standing, polygon: Polyg
     rest = _Rest(plan, set(done), standing, request)
     tasks = rest.tasks()
     if not tasks:
-        msg = "every pass of the plan is done"
+        msg = sentence("every pass of the plan is done")
         raise PlanError(msg)
     segments = tuple(joiner.segments(tasks, _start(tasks[0], standing, plan.spacing)))
     left = {task.number for task in tasks}

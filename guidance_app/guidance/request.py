@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from guidance_app.documents import Direction, HitchKind, Implement, Method, Operation, Tractor
+from guidance_app.language import message, sentence
 
 __all__ = ["Body", "LastPass", "PlanError", "PlanRequest", "StartCorner", "request_from_documents"]
 
@@ -101,39 +102,51 @@ class PlanRequest:
         for name, low, high in _BOUNDS:
             value = getattr(self, name)
             if not (math.isfinite(value) and low <= value <= high):
-                msg = f"{_words(name)} is {value:g}, but must be from {low:g} to {high:g}"
+                msg = sentence(
+                    "{name} is {value:g}, but must be from {low:g} to {high:g}",
+                    name=_named(name),
+                    value=value,
+                    low=low,
+                    high=high,
+                )
                 raise PlanError(msg)
         self._check_choices()
 
     def _check_choices(self) -> None:
         if self.overlap >= self.width:
-            msg = f"the overlap of {self.overlap:g} m is not less than the working width of {self.width:g} m"
+            msg = sentence(
+                "the overlap of {overlap:g} m is not less than the working width of {width:g} m",
+                overlap=self.overlap,
+                width=self.width,
+            )
             raise PlanError(msg)
         if self.laps is not None and not 0 <= self.laps <= MAX_LAPS:
-            msg = f"{self.laps} headland laps cannot be planned; 0 to {MAX_LAPS} can"
+            msg = sentence("{laps} headland laps cannot be planned; 0 to {most} can", laps=self.laps, most=MAX_LAPS)
             raise PlanError(msg)
         if self.turning_space is not None and not 0 <= self.turning_space <= 1000:
-            msg = f"a turning space of {self.turning_space:g} m cannot be planned; 0 to 1000 m can"
+            msg = sentence(
+                "a turning space of {metres:g} m cannot be planned; 0 to 1000 m can", metres=self.turning_space
+            )
             raise PlanError(msg)
         if self.heading is not None and not math.isfinite(self.heading):
-            msg = "the direction of the passes is not a number"
+            msg = sentence("the direction of the passes is not a number")
             raise PlanError(msg)
         if self.direction is Direction.TYPED and self.heading is None:
-            msg = "the direction of the passes is to be typed, but no angle is given"
+            msg = sentence("the direction of the passes is to be typed, but no angle is given")
             raise PlanError(msg)
         self._check_line()
 
     def _check_line(self) -> None:
         if self.direction is Direction.LINE and self.line is None:
-            msg = "the passes are to follow a guidance line, but none is given"
+            msg = sentence("the passes are to follow a guidance line, but none is given")
             raise PlanError(msg)
         if self.line is not None and not math.dist(*self.line) > 0.1:
-            msg = "the guidance line's two points are the same place, so it has no direction"
+            msg = sentence("the guidance line's two points are the same place, so it has no direction")
             raise PlanError(msg)
         for name in ("start", "exit", "edge_near"):
             point = getattr(self, name)
             if point is not None and not all(math.isfinite(value) for value in point):
-                msg = f"the {_words(name)} is not a place"
+                msg = sentence("{name} is not a place", name=_named(name))
                 raise PlanError(msg)
 
     @property
@@ -175,8 +188,27 @@ _BOUNDS = (
 )
 
 
-def _words(name: str) -> str:
-    return {"width": "the working width", "radius": "the turning radius"}.get(name, "the " + name.replace("_", " "))
+PARTS: Mapping[str, str] = {
+    "width": message("the working width"),
+    "overlap": message("the overlap"),
+    "radius": message("the turning radius"),
+    "offset_back": message("the implement's distance behind the axle"),
+    "offset_right": message("the implement's offset to the right"),
+    "length": message("the implement's length"),
+    "wheelbase": message("the wheelbase"),
+    "track_width": message("the track width"),
+    "work_speed": message("the speed at work"),
+    "turn_speed": message("the speed in turns"),
+    "stop_s": message("the time of a stop"),
+    "start": message("the start"),
+    "exit": message("the exit"),
+    "edge_near": message("the place near the edge"),
+}
+
+
+def _named(name: str) -> str:
+    """What a person calls a number of the request."""
+    return sentence(PARTS[name])
 
 
 def request_from_documents(

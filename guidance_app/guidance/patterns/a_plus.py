@@ -5,6 +5,7 @@ import numpy as np
 from guidance_app.angles import east_north
 from guidance_app.guidance.family import GuidanceLineError, ParallelLines
 from guidance_app.guidance.line_type import LineType
+from guidance_app.language import sentence
 from guidance_app.model import FloatArray
 
 __all__ = ["LINE", "lines_through", "points_of"]
@@ -21,7 +22,7 @@ def points_of(point: tuple[float, float], heading: float) -> FloatArray:
 def lines_through(points: FloatArray, spacing: float) -> ParallelLines:
     """Through the first point towards the second."""
     if len(points) != 2:
-        msg = "an A+ line is stored as its point and one in its heading"
+        msg = sentence("an A+ line is stored as its point and one in its heading")
         raise GuidanceLineError(msg)
     (east, north), (toward_east, toward_north) = points.tolist()
     return ParallelLines((east, north), (toward_east, toward_north), spacing)

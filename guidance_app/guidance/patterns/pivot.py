@@ -6,6 +6,7 @@ import numpy as np
 
 from guidance_app.guidance.family import Circles, GuidanceLineError
 from guidance_app.guidance.line_type import LineType
+from guidance_app.language import sentence
 from guidance_app.model import FloatArray
 
 __all__ = ["LINE", "circles_around", "points_of_arc"]
@@ -25,7 +26,7 @@ def points_of_arc(driven: FloatArray) -> FloatArray:
     (east, north, rest), _, rank, _ = np.linalg.lstsq(system, np.square(away).sum(axis=1), rcond=None)
     radius = math.sqrt(max(rest + east * east + north * north, 0.0))
     if rank < 3 or radius > LARGEST:
-        msg = "these points lie on a straight line: drive a longer part of the circle"
+        msg = sentence("these points lie on a straight line: drive a longer part of the circle")
         raise GuidanceLineError(msg)
     centre_east, centre_north = float(middle[0] + east), float(middle[1] + north)
     return np.array([[centre_east, centre_north], [centre_east + radius, centre_north]])
@@ -34,7 +35,7 @@ def points_of_arc(driven: FloatArray) -> FloatArray:
 def circles_around(points: FloatArray, spacing: float) -> Circles:
     """Around the first point, through the second."""
     if len(points) != 2:
-        msg = "a pivot is stored as its centre and one point of its circle"
+        msg = sentence("a pivot is stored as its centre and one point of its circle")
         raise GuidanceLineError(msg)
     (east, north), rim = points.tolist()
     return Circles((east, north), math.dist((east, north), rim), spacing)
