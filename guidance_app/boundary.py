@@ -16,7 +16,7 @@ from pydantic import ValidationError
 
 from guidance_app.documents import MAX_VERTICES, FieldDocument, Geometry, GuidanceLineDocument, Position
 from guidance_app.geodesy import FieldFrame
-from guidance_app.language import sentence
+from guidance_app.language import message, sentence
 from guidance_app.model import FloatArray
 
 __all__ = [
@@ -112,19 +112,13 @@ def polygon_in(frame: FieldFrame, geometry: Geometry) -> shapely.Polygon:
 def checked_field(draft: FieldDraft, fallback_name: str) -> CheckedField:
     """The field of a draft, its largest part if it has several. Raises ``BoundaryError``."""
     if not draft.parts:
-        msg = sentence("there is no polygon in it")
-        raise BoundaryError(msg)
+        raise BoundaryError(sentence("there is no polygon in it"))
     boundaries = [checked_boundary(part) for part in draft.parts]
     boundary = max(boundaries, key=lambda each: each.area)
     remarks = [*draft.remarks, *boundary.remarks]
     if len(boundaries) > 1:
-        remarks.append(
-            sentence(
-                "the field has {count} parts; only the largest, {area:.2f} ha, is taken",
-                count=len(boundaries),
-                area=boundary.area / HECTARE,
-            )
-        )
+        pattern = message("the field has {count} parts; only the largest, {area:.2f} ha, is taken")
+        remarks.append(sentence(pattern, count=len(boundaries), area=boundary.area / HECTARE))
     try:
         document = FieldDocument(
             name=draft.name or fallback_name,
@@ -152,8 +146,7 @@ def checked_boundary(rings: PolygonRings) -> CheckedBoundary:
         what = sentence("the boundary") if number == 0 else sentence("exclusion {number}", number=number)
         ring = _repaired(lonlat, frame, what, remarks)
         if ring is None and number == 0:
-            msg = sentence("the boundary has no three corners that enclose ground")
-            raise BoundaryError(msg)
+            raise BoundaryError(sentence("the boundary has no three corners that enclose ground"))
         if ring is not None:
             kept.append(ring)
     polygon = _polygon(kept, frame)
@@ -168,8 +161,7 @@ def checked_boundary(rings: PolygonRings) -> CheckedBoundary:
 def _degrees(rings: PolygonRings) -> list[FloatArray]:
     """Each ring of shape (N, 2): longitude, latitude, rounded as it will be stored."""
     if not rings:
-        msg = sentence("there is no ring in it")
-        raise BoundaryError(msg)
+        raise BoundaryError(sentence("there is no ring in it"))
     if len(rings) - 1 > MAX_EXCLUSIONS:
         msg = sentence("it has {count} exclusions; {most} are possible", count=len(rings) - 1, most=MAX_EXCLUSIONS)
         raise BoundaryError(msg)
@@ -215,8 +207,7 @@ def _check_degrees(number: int, longitude: float, latitude: float) -> None:
 def _frame_around(lonlat: FloatArray) -> FieldFrame:
     """A frame in the middle of the box of a ring, which may lie across the 180th meridian."""
     if len(lonlat) == 0:
-        msg = sentence("the boundary has no corner")
-        raise BoundaryError(msg)
+        raise BoundaryError(sentence("the boundary has no corner"))
     longitudes = _unwrapped(lonlat[:, 0])
     longitude = (longitudes.min() + longitudes.max()) / 2
     latitude = (lonlat[:, 1].min() + lonlat[:, 1].max()) / 2
@@ -249,20 +240,12 @@ def _repaired(lonlat: FloatArray, frame: FieldFrame, what: str, remarks: list[st
         remarks.append(sentence("{what} was open; its last corner is joined to its first", what=what))
     distinct = _without_repeats(points, keep)
     if len(distinct) < len(keep):
-        remarks.append(
-            sentence(
-                "{what} had {count} repeated corners; they are dropped", what=what, count=len(keep) - len(distinct)
-            )
-        )
+        lost = len(keep) - len(distinct)
+        remarks.append(sentence("{what} had {count} repeated corners; they are dropped", what=what, count=lost))
     pointed = _without_spikes(points, distinct)
     if len(pointed) < len(distinct):
-        remarks.append(
-            sentence(
-                "{what} had spikes without width; {count} corners are dropped",
-                what=what,
-                count=len(distinct) - len(pointed),
-            )
-        )
+        lost = len(distinct) - len(pointed)
+        remarks.append(sentence("{what} had spikes without width; {count} corners are dropped", what=what, count=lost))
     if len(pointed) < 3 or _is_nothing(shapely.Polygon(points[pointed])):
         if what != "the boundary":
             remarks.append(sentence("{what} encloses nothing and is dropped", what=what))
