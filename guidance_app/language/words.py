@@ -30,6 +30,10 @@ LOCALES: Mapping[Language, str] = {"en": "en_GB", "ja": "ja_JP", "es": "es_ES"}
 """How numbers, dates and times of day are written: day before month in English, 24 hours everywhere."""
 
 
+NO_BREAK_SPACE = "\u00a0"
+"""Between thousands where the comma is the decimal sign."""
+
+
 class _Formatter(string.Formatter):
     """``str.format`` with the locale's decimal sign in every number that has decimals."""
 
@@ -39,6 +43,8 @@ class _Formatter(string.Formatter):
     def format_field(self, value: Any, format_spec: str) -> str:
         """One value; numbers of other types and words stay as they are."""
         text: str = super().format_field(value, format_spec)
+        if "," in format_spec:
+            text = text.replace(",", NO_BREAK_SPACE)
         return text.replace(".", self._sign) if isinstance(value, float) else text
 
 

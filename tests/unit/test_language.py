@@ -64,6 +64,11 @@ def test_decimals_have_the_sign_of_the_language(language: Language, shown: str) 
     assert words.say(sentence("{x:.2f} xyzzy.", x=-12.5)) == f"{shown} xyzzy."
 
 
+def test_thousands_are_not_taken_for_decimals() -> None:
+    assert words_for("es")("{size:,.1f} {n:,} xyzzy", size=1234.5, n=20_000) == "1\u00a0234,5 20\u00a0000 xyzzy"
+    assert words_for("ja")("{size:,.1f} xyzzy", size=1234.5) == "1,234.5 xyzzy"
+
+
 def test_names_and_whole_numbers_keep_their_points() -> None:
     assert words_for("es")("{file}: {n}", file="run.nmea", n=1000) == "run.nmea: 1000"
 

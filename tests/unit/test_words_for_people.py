@@ -58,8 +58,15 @@ def _texts(node: ast.AST) -> Iterator[tuple[int, str]]:
         return
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
         yield node.lineno, node.value
-    for inner in node.values if isinstance(node, ast.Dict) else ast.iter_child_nodes(node):
+    for inner in _values(node) if isinstance(node, ast.Dict) else ast.iter_child_nodes(node):
         yield from _texts(inner)
+
+
+def _values(table: ast.Dict) -> Iterator[ast.expr]:
+    """The values of a table, except those that a marked key names for the program."""
+    for key, value in zip(table.keys, table.values, strict=True):
+        if not (isinstance(key, ast.Call) and _name(key.func) in MARKED):
+            yield value
 
 
 def _on_words(function: ast.expr) -> bool:
@@ -137,6 +144,7 @@ def test_an_unmarked_literal_is_found(line: str) -> None:
         'gui.add_slider(hands.words("Look ahead"), 0, 1, 0.1, 0)',
         'self._end.label = self._words("End the drive" if sure else "Drive on")',
         'TABLE = {Kind.ONE: message("one of them")}',
+        'TABLE = {message("one of them"): "first kind"}',
         'words.plural("{n} try left", "{n} tries left", n)',
         'msg = "a panel needs a session"\nraise ValueError(msg)',
         'log.warning("the page has gone")',
