@@ -65,6 +65,7 @@ STYLE = """<style>
 .mantine-Slider-trackContainer{height:1.6rem!important}
 [style*="width: 7.25em"]{width:5.2em!important}
 .mantine-Tabs-tab{padding-inline:.42em!important;font-size:.9em}
+[style*="max-width: 14em"]{padding:0 .42em!important;font-size:.85em;height:2.82em!important}
 @media(max-width:576px){[style*="width: 20em"]{width:100vw!important}
  .g-tile:nth-child(-n+4){display:none}.g-tiles{padding-bottom:.3em}}
 </style>"""
