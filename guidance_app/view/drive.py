@@ -62,7 +62,7 @@ def pass_work_words(snapshot: Snapshot, units: Units, words: Words) -> str:
     if totals is None:
         return ""
     return words(
-        "This pass: {worked} worked, {twice} twice, {missed} missed",
+        "Pass: {worked} worked, {twice} twice, {missed} missed",
         worked=area_text(totals.worked, units, words),
         twice=area_text(totals.overlap, units, words),
         missed=area_text(totals.left or 0.0, units, words),
