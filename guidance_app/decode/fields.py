@@ -8,6 +8,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from datetime import date
+from functools import lru_cache
 
 from guidance_app.decode.sentence import DecodeError
 from guidance_app.geodesy import grid_cell
@@ -22,6 +23,9 @@ _FOUR = {"a": 0, "b": 1, "c": 2, "d": 3}
 _EPOCH = date(1970, 1, 1).toordinal()
 
 _match_number = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)").fullmatch
+REMEMBERED = 4096
+"""Numbers as text that are remembered: most fields of a sentence change seldom, and some are said twice an epoch."""
+
 _match_count = re.compile(r"[0-9]{1,4}").fullmatch
 _match_time = re.compile(r"([01][0-9]|2[0-3])([0-5][0-9])([0-5][0-9]|60)(\.[0-9]*)?").fullmatch
 _match_minutes = re.compile(r"([0-9]{1,3})([0-5][0-9])(?:\.([0-9]*))?").fullmatch
@@ -58,9 +62,10 @@ class Fields:
         text = self.text(name)
         if not text:
             return None
-        if _match_number(text) is None:
+        value = _number(text)
+        if value is None:
             raise DecodeError(_bad(self.kind))
-        return float(text)
+        return value
 
     def between(self, name: str, low: float, high: float) -> float | None:
         """A number that must lie within [low, high]."""
@@ -129,26 +134,45 @@ class Fields:
         longitude, west = self.text("lon"), self.text("lon_dir")
         if not (latitude or longitude):
             return None
-        north = _match_minutes(latitude)
-        east = _match_minutes(longitude)
-        if north is None or east is None or south not in ("N", "S") or west not in ("E", "W"):
+        place = _place(latitude, south, longitude, west)
+        if place is None:
             raise DecodeError(_bad(self.kind))
-        latitude_deg = _degrees(latitude, len(north[1]))
-        longitude_deg = _degrees(longitude, len(east[1]))
-        if latitude_deg > 90.0 or longitude_deg > 180.0:
-            raise DecodeError(_bad(self.kind))
-        cell = (
-            grid_cell(latitude_deg, len(north[3] or ""))[0],
-            grid_cell(latitude_deg, len(east[3] or ""))[1],
-        )
-        return (-latitude_deg if south == "S" else latitude_deg, -longitude_deg if west == "W" else longitude_deg, cell)
+        return place
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _number(text: str) -> float | None:
+    """None for what is no decimal number."""
+    return None if _match_number(text) is None else float(text)
+
+
+@lru_cache(maxsize=4)
+def _place(latitude: str, south: str, longitude: str, west: str) -> tuple[float, float, tuple[float, float]] | None:
+    """Degrees and cell; None for what is no place. An epoch says the same place in two or three sentences."""
+    north, east = _match_minutes(latitude), _match_minutes(longitude)
+    if north is None or east is None or south not in ("N", "S") or west not in ("E", "W"):
+        return None
+    latitude_deg = _degrees(latitude, len(north[1]))
+    longitude_deg = _degrees(longitude, len(east[1]))
+    if latitude_deg > 90.0 or longitude_deg > 180.0:
+        return None
+    cell = (grid_cell(latitude_deg, len(north[3] or ""))[0], grid_cell(latitude_deg, len(east[3] or ""))[1])
+    return (-latitude_deg if south == "S" else latitude_deg, -longitude_deg if west == "W" else longitude_deg, cell)
 
 
 def second_of_day(text: str, kind: str) -> float:
     """The second of the day of ``hhmmss[.sss]``."""
+    second = _second(text)
+    if second is None:
+        raise DecodeError(_bad(kind))
+    return second
+
+
+@lru_cache(maxsize=4)
+def _second(text: str) -> float | None:
     match = _match_time(text)
     if match is None:
-        raise DecodeError(_bad(kind))
+        return None
     hours, minutes, seconds, decimals = match.groups()
     fraction = float(decimals) if decimals and len(decimals) > 1 else 0.0
     return int(hours) * SECONDS_PER_HOUR + int(minutes) * 60 + int(seconds) + fraction

@@ -13,8 +13,6 @@ import re
 import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import reduce
-from operator import xor
 
 import pynmea2
 
@@ -192,7 +190,12 @@ def read_line(line: str) -> Sentence:
 
 def xor_of(body: str) -> int:
     """The NMEA checksum: exclusive or of all between ``$`` and ``*``."""
-    return reduce(xor, body.encode("ascii"), 0)
+    folded = int.from_bytes(body.encode("ascii"))
+    half = 4 << len(body).bit_length()
+    while half >= 8:
+        folded ^= folded >> half
+        half >>= 1
+    return folded & 0xFF
 
 
 def _checked_body(line: str) -> str:

@@ -64,8 +64,7 @@ def after_chunk(state: LinkState, chunk: Chunk, closed: tuple[Observation, ...],
         return state
     fixes = sum(isinstance(one, Fix) for one in closed)
     status, reason = _told(state, chunk.link, closed, counts[2])
-    return replace(
-        state,
+    return LinkState(
         status=status,
         since=state.since if status is state.status else chunk.arrival,
         reason=reason,
@@ -73,6 +72,7 @@ def after_chunk(state: LinkState, chunk: Chunk, closed: tuple[Observation, ...],
         sentences=counts[0],
         rejected=counts[1],
         fixes=state.fixes + fixes,
+        what=state.what,
     )
 
 

@@ -258,7 +258,11 @@ class WorkDone:
         if self._turning is not None:
             errors = self._turning.errors_at(point, later.heading, math.dist(point, self._guided[1]))
         errors = errors or self._tracker.errors_at(*point, later.heading)
-        return prediction if errors is None else replace(prediction, cross_track=errors[0], heading_error=errors[1])
+        if errors is None:
+            return prediction
+        return Prediction(
+            prediction.look_ahead_s, later, prediction.arc, cross_track=errors[0], heading_error=errors[1]
+        )
 
     @property
     def notices(self) -> tuple[str, ...]:
@@ -296,7 +300,7 @@ class WorkDone:
         if self._guidance is None:
             return None
         missed = self._pass_work.missed * self._job.implement.working_width
-        return replace(self._coverage.of_pass(self._guidance.target.number), left=missed)
+        return self._coverage.of_pass(self._guidance.target.number, missed)
 
     def _look_for_a_line(self, pose: Pose) -> None:
         stretch = self._stretch.step(pose)

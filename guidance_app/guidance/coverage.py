@@ -80,6 +80,9 @@ class _Sums:
     seconds: float = 0.0
 
 
+NO_WORK = _Sums()
+
+
 class Coverage:
     """Counts the ground that an implement of this working width has worked.
 
@@ -236,9 +239,9 @@ class Coverage:
         left = None if self._field_area is None else max(self._field_area - sums.field * square, 0.0)
         return self._totals(sums, left)
 
-    def of_pass(self, number: int | None) -> CoverageTotals:
+    def of_pass(self, number: int | None, left: float | None = None) -> CoverageTotals:
         """Of the work on one pass; ground that an earlier pass had worked is its overlap, not its worked area."""
-        return self._totals(self._by_pass.get(number, _Sums()), None)
+        return self._totals(self._by_pass.get(number, NO_WORK), left)
 
     def _totals(self, sums: _Sums, left: float | None) -> CoverageTotals:
         square = self._grid.cell**2

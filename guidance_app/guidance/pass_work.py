@@ -12,6 +12,9 @@ from guidance_app.model import Guidance, Pass
 
 __all__ = ["PassWork"]
 
+EVERY = 0.5
+"""Metres that are awaited before they are counted, unless the implement is lowered or lifted."""
+
 
 class PassWork:
     """Remembers two unions of stretches a pass: driven along, and worked. ``behind`` is as the tracker's."""
@@ -25,6 +28,7 @@ class PassWork:
         self._key = 0
         self._length = 0.0
         self._last: float | None = None
+        self._was_working = False
 
     def fork(self) -> "PassWork":
         """An independent copy."""
@@ -41,11 +45,13 @@ class PassWork:
             self._begin(guidance.target)
         place = self._place(guidance)
         if self._last is not None:
+            if abs(place - self._last) < EVERY and working == self._was_working:
+                return
             for start, end in self._stretches(self._last, place, closed=guidance.target.closed):
                 self._driven.add(self._key, start, end)
-                if working:
+                if self._was_working:
                     self._worked.add(self._key, start, end)
-        self._last = place
+        self._last, self._was_working = place, working
 
     def _stretches(self, start: float, end: float, *, closed: bool) -> tuple[tuple[float, float], ...]:
         """What lies between two places, in two where a lap's end was crossed."""

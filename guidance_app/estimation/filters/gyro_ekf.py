@@ -26,6 +26,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from guidance_app.angles import wrap_2pi, wrap_pi
+from guidance_app.estimation.correction_kernels import carried_covariance, corrected, gate_distance
 from guidance_app.estimation.filter import Filter, FilterSettings, GyroSettings, Start
 from guidance_app.estimation.receiver_noise import DEFAULT_CELL, fix_covariance, noise_of
 from guidance_app.estimation.reference_point import offset_point
@@ -297,7 +298,7 @@ def _predicted(x: FloatArray, p: FloatArray, u: Inputs, walks: FloatArray) -> tu
     else:
         F = transition_jacobian(x, u)
         after = moved(x, u)
-    return after, F @ p @ F.T + np.diag(walks) * u.dt
+    return after, carried_covariance(F, p, walks, u.dt)
 
 
 def _corrected(
@@ -320,17 +321,12 @@ def _corrected(
         H = observation_jacobian(x, heading, forward, left)
         expected = antenna_position(x, heading, forward, left)
     innovation = np.array([z.east, z.north]) - expected
-    S = H @ p @ H.T + R
-    if innovation @ np.linalg.solve(S, innovation) > settings.gate:
+    if gate_distance(H, p, R, innovation) > settings.gate:
         if rejected < DEAD_RECKONED:
             return x, p, rejected + 1
         p = p.copy()
         p[:2, :2] += np.eye(2) * float(innovation @ innovation)
-        S = H @ p @ H.T + R
-    K = np.linalg.solve(S, H @ p).T
-    x = x + K @ innovation
-    joseph = np.eye(x.size) - K @ H
-    return x, joseph @ p @ joseph.T + K @ R @ K.T, 0
+    return *corrected(x, p, H, R, innovation), 0
 
 
 def _pose(z: Measurement, x: FloatArray, p: FloatArray, heading: float, speed: float, rate: float) -> Pose:
