@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import viser
+from numpy.typing import NDArray
 
 from guidance_app.model import FloatArray
 from guidance_app.view.camera import WorldPose
@@ -94,6 +95,21 @@ class Sketch:
             thickness_units="screen",
         )
 
+    def coloured(self, name: str, strokes: FloatArray, colours: NDArray[np.uint8]) -> None:
+        """Strokes of shape (N, 2, 2) with a colour each, shape (N, 3); none take them away."""
+        if len(strokes) == 0:
+            self.remove(name)
+            return
+        ground = np.full((len(strokes), 2, 3), Z_SKETCH, dtype=np.float32)
+        ground[:, :, :2] = strokes
+        self._nodes[name] = self._client.scene.add_line_segments(
+            f"{self._root}/{name}",
+            ground,
+            np.repeat(_as_shown(colours)[:, None, :], 2, axis=1),
+            thickness=LINE_PIXELS,
+            thickness_units="screen",
+        )
+
     def remove(self, name: str) -> None:
         """Takes one part away; one that is not there is no error."""
         node = self._nodes.pop(name, None)
@@ -132,3 +148,11 @@ class Sketch:
         point = ground_point(event.ray_origin, event.ray_direction, self._world())
         if point is not None:
             tapped(*point)
+
+
+def _as_shown(colours: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """What to send so that the screen shows these colours; shape (N, 3)."""
+    kinds, places = np.unique(colours, axis=0, return_inverse=True)
+    sent = np.array([flat_source((int(red), int(green), int(blue))) for red, green, blue in kinds], dtype=np.uint8)
+    shown: NDArray[np.uint8] = sent[places.reshape(-1)]
+    return shown

@@ -36,7 +36,7 @@ class _Unplugged:
 
     def events(self, stop: threading.Event) -> Iterator[Chunk | SourceUp | SourceDown]:
         del stop
-        yield SourceDown(0.0, NO_SOURCE)
+        yield SourceDown(0.0, NO_SOURCE, ended=True)
 
 
 def idle_job(job: Job | None = None) -> Job:

@@ -15,7 +15,7 @@ from guidance_app.runtime.recorder import new_recording
 from guidance_app.runtime.stepping import stepped
 from support.drives import a_job
 
-PATIENCE = 30.0
+PATIENCE = 150.0
 
 
 class Script:

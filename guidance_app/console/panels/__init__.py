@@ -8,6 +8,7 @@ from guidance_app.console.panels.menu import Menu
 from guidance_app.console.panels.plan import Plan
 from guidance_app.console.panels.position import Position
 from guidance_app.console.panels.receiver import Receiver
+from guidance_app.console.panels.recordings import Recordings
 from guidance_app.console.panels.replay import Replay
 from guidance_app.console.panels.rest import Rest
 from guidance_app.console.panels.start import Start
@@ -39,5 +40,6 @@ SETUP_PANELS: dict[str, type[Panel]] = {
     "plan": Plan,
     "receiver": Receiver,
     "machines": Machines,
+    "recordings": Recordings,
 }
 """While setting up, in the order of the tabs."""

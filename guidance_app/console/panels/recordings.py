@@ -1,0 +1,114 @@
+"""The recordings panel: what was driven, to look at, to replay, to compare and to hand in."""
+
+from pathlib import Path
+from typing import Any, ClassVar
+
+import viser
+
+from guidance_app.batch.reviewing import Review, opened_review
+from guidance_app.console.desk import Desk, Hands, Place
+from guidance_app.console.pages import Page, Pages
+from guidance_app.console.reviewing.listing import RecordingList
+from guidance_app.console.reviewing.looking import Looking
+from guidance_app.console.widgets import Shown, notice_html
+from guidance_app.language import message
+from guidance_app.runtime import ReplaySession
+from guidance_app.store import StoreError
+from guidance_app.store.recordings import open_recording
+from guidance_app.store.recordings_list import list_recordings
+
+__all__ = ["Recordings"]
+
+NOBODY = 0
+
+
+class Recordings:
+    """One page at a time: the list, the progress of an opening, one recording."""
+
+    title: ClassVar[str] = message("Recordings")
+
+    def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
+        self._hands = hands
+        self._pages = Pages(gui, hands)
+        self._go_to(0)
+
+    def show(self, desk: Desk) -> None:
+        """Brings the open page up to now."""
+        self._pages.show(desk)
+
+    def _go_to(self, page: int) -> None:
+        self._hands.sketch.clear()
+        self._pages.turn(lambda gui: RecordingList(gui, self._hands, page, self._look, self._go_to))
+
+    def _look(self, path: Path) -> None:
+        progress = _Progress(self._hands)
+        self._pages.turn(progress.on)
+        self._hands.later(lambda: self._open(path, progress))
+
+    def _open(self, path: Path, progress: "_Progress") -> None:
+        store = self._hands.house.store
+        assert store is not None
+        try:
+            review = opened_review(path, store.root, progress.tell)
+        except StoreError:
+            self._go_to(0)
+            raise
+        self._pages.turn(lambda gui: self._looking(gui, path, review))
+
+    def _looking(self, gui: viser.GuiApi, path: Path, review: Review) -> Page:
+        page = Looking(gui, self._hands, path, review, lambda: self._go_to(0), lambda: self._replay(path))
+        store = self._hands.house.store
+        others = [] if store is None else [one for one in list_recordings(store.root) if one.summary is not None]
+        paths = [one.path for one in others if one.path != path]
+        if paths:
+            self._offer_comparison(gui, page, paths)
+        return page
+
+    def _offer_comparison(self, gui: viser.GuiApi, page: Looking, paths: list[Path]) -> None:
+        words = self._hands.words
+        names = (words("no other drive"), *(one.name for one in paths))
+        which = gui.add_dropdown(words("Compare with"), names)
+
+        def compare() -> None:
+            place = names.index(which.value)
+            store = self._hands.house.store
+            chosen = None if place == NOBODY or store is None else opened_review(paths[place - 1], store.root)
+            page.compare_with(chosen)
+
+        @which.on_update
+        async def _(_: object) -> None:
+            self._hands.later(compare)
+
+    def _replay(self, path: Path) -> None:
+        def begin() -> None:
+            drive = open_recording(path)
+            if not len(drive.events):
+                msg = self._hands.words("This recording holds no event.")
+                raise StoreError(msg)
+            self._hands.house.take(ReplaySession.of_drive(drive))
+            self._hands.go(Place.DRIVE)
+
+        self._hands.later(begin)
+
+
+class _Progress:
+    """The page while a long recording is taken through the engine."""
+
+    def __init__(self, hands: Hands) -> None:
+        self._hands = hands
+        self._done = 0.0
+
+    def on(self, gui: viser.GuiApi) -> "_Progress":
+        words = self._hands.words
+        Shown(gui).show(notice_html([words("Working through the recording; the next time it opens at once.")]))
+        self._bar: Any = gui.add_progress_bar(0.0, animated=True)
+        return self
+
+    def tell(self, done: float) -> None:
+        """On the worker's thread."""
+        self._done = done
+
+    def show(self, desk: Desk) -> None:
+        """Brings the bar up to what is done."""
+        del desk
+        self._bar.value = round(100.0 * self._done)

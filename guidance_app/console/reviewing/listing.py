@@ -1,0 +1,133 @@
+"""The list of recordings: a few at a time with a small map each, the newest first."""
+
+import datetime
+import html
+import queue
+from collections.abc import Callable
+from pathlib import Path
+
+import viser
+
+from guidance_app.batch.reviewing import Review, opened_review
+from guidance_app.console.desk import Desk, Hands
+from guidance_app.console.pages import press
+from guidance_app.console.widgets import Shown, buttons, notice_html
+from guidance_app.language import Words
+from guidance_app.store import StoreError
+from guidance_app.store.recordings_list import ListedRecording, list_recordings
+from guidance_app.view.review import thumbnail_svg
+from guidance_app.view.status import clock
+from guidance_app.view.units import area_text
+
+__all__ = ["RecordingList"]
+
+AT_ONCE = 5
+SHORT = 3 * 3600.0
+"""Maps of recordings up to this long (s) are made unasked."""
+
+
+class RecordingList:
+    """One page of the list. ``look`` opens a recording, ``go_to`` another page of the list."""
+
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        hands: Hands,
+        page: int,
+        look: Callable[[Path], None],
+        go_to: Callable[[int], None],
+    ) -> None:
+        self._hands = hands
+        self._words = words = hands.words
+        self._maps: dict[Path, Shown] = {}
+        self._drawn: queue.SimpleQueue[tuple[ListedRecording, str]] = queue.SimpleQueue()
+        store = hands.house.store
+        found = () if store is None else list_recordings(store.root)
+        if not found:
+            gui.add_html(
+                notice_html(
+                    [words("No drive is recorded yet. Every drive records itself and is found here afterwards.")]
+                )
+            )
+        first = page * AT_ONCE
+        shown = found[first : first + AT_ONCE]
+        for one in shown:
+            self._add(gui, one, look)
+        if len(found) > AT_ONCE:
+            pages = (len(found) - 1) // AT_ONCE
+            label = words("{first} to {last} of {count}", first=first + 1, last=first + len(shown), count=len(found))
+            turns = (
+                (words("Newer"), lambda: go_to(max(page - 1, 0))),
+                (words("Older"), lambda: go_to(min(page + 1, pages))),
+            )
+            buttons(gui, label, turns)
+        hands.later(lambda: self._draw_maps(shown))
+
+    def _add(self, gui: viser.GuiApi, one: ListedRecording, look: Callable[[Path], None]) -> None:
+        picture = Shown(gui)
+        self._maps[one.path] = picture
+        picture.show(_card(one, "", self._words, self._hands))
+        if one.summary is not None:
+            press(gui, self._words("Look at {name}", name=_short_name(one, self._words)), lambda: look(one.path))
+
+    def _draw_maps(self, shown: tuple[ListedRecording, ...]) -> None:
+        """Beside the words; one that cannot be opened keeps its words alone. A drive goes before."""
+        store = self._hands.house.store
+        for one in shown:
+            if (
+                store is None
+                or self._hands.house.driving
+                or one.summary is None
+                or one.summary.duration_s > SHORT
+                or one.being_written
+            ):
+                continue
+            try:
+                review = opened_review(one.path, store.root)
+            except StoreError:
+                continue
+            self._drawn.put((one, _map_of(review)))
+
+    def show(self, desk: Desk) -> None:
+        """Puts in the maps that have been drawn meanwhile."""
+        del desk
+        while not self._drawn.empty():
+            one, picture = self._drawn.get()
+            self._maps[one.path].show(_card(one, picture, self._words, self._hands))
+
+
+def _map_of(review: Review) -> str:
+    return thumbnail_svg(review.log, review.boundary)
+
+
+def _short_name(one: ListedRecording, words: Words) -> str:
+    summary = one.summary
+    return one.path.name if summary is None else _moment(summary.started_utc, words)
+
+
+def _moment(iso: str, words: Words) -> str:
+    """The machine's local time of an ISO 8601 moment; the text itself where it is none."""
+    try:
+        return words.moment(datetime.datetime.fromisoformat(iso).astimezone())
+    except ValueError:
+        return iso
+
+
+def _card(one: ListedRecording, picture: str, words: Words, hands: Hands) -> str:
+    """Small map and words side by side; all text is escaped, the picture is our own."""
+    summary = one.summary
+    if summary is None:
+        return notice_html([f"{one.path.name}: {words.say(one.problem or words('cannot be opened'))}"])
+    units = hands.desk().units
+    lines = [
+        _moment(summary.started_utc, words),
+        " · ".join(part for part in (summary.field, summary.operation) if part) or words("No field"),
+        clock(summary.duration_s)
+        + ("" if summary.worked_m2 is None else f" · {area_text(summary.worked_m2, units, words)}"),
+    ]
+    if one.being_written:
+        lines.append(words("is being recorded"))
+    elif summary.truncated:
+        lines.append(words("cut off: {where}", where=words.say(summary.truncated)))
+    said = "".join(f"<div>{html.escape(line)}</div>" for line in lines)
+    return f'<div class="g-recording"><div class="g-map">{picture}</div><div>{said}</div></div>'
