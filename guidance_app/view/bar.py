@@ -198,7 +198,7 @@ def _reason(state: BarState, link: LinkState, fix_age: float | None, words: Word
         return ""
     if state is BarState.STALE and fix_age is not None:
         return words("no position for {age}", age=words("{n} s", n=round(fix_age)))
-    if state is BarState.ENDED and snapshot.fix is None and link.reason:
+    if state is BarState.ENDED and not link.fixes and link.reason:
         return words.say(link.reason)
     if state is BarState.DOWN and link.reason:
         return f"{words(REASONS[state])}: {words.say(link.reason)}"[:60]
