@@ -15,6 +15,7 @@ COMMANDS: Mapping[str, str] = MappingProxyType(
         "ledger": "write the sheet to hand in: what was worked where, when and how well",
         "export": "write a drive for other programs",
         "convert": "look into field files and time logs of other programs, and convert them",
+        "report": "pack a recording for a bug report, at its place or moved elsewhere",
         "plan": "plan a field's passes at the desk",
         "evaluate": "repeat the papers' protocols and the scenarios, beside the goals",
         "tune": "fit the filters to simulated or recorded drives",
