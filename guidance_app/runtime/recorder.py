@@ -15,6 +15,7 @@ from pathlib import Path
 from guidance_app import __version__
 from guidance_app.documents import Job
 from guidance_app.estimation.filter import FilterSettings
+from guidance_app.language import sentence
 from guidance_app.model import Chunk, Commanded, Event, Snapshot
 from guidance_app.recording import LineWriter, RecordedDrive, RecordingMeta, read_lines
 from guidance_app.store.files import StoreError, why
@@ -115,7 +116,7 @@ class Recorder:
             self._end()
         except Exception:
             log.exception("the recorder failed")
-            self._trouble = "This drive is no longer recorded: the recorder failed. Driving goes on."
+            self._trouble = sentence("This drive is no longer recorded: the recorder failed. Driving goes on.")
         finally:
             self._folder.close()
 
@@ -171,13 +172,18 @@ class Recorder:
             return
         if self._trouble is None:
             log.warning("the recording %s cannot be written: %s", self.path, reason)
-        self._trouble = (
-            f"This drive is not being written down: {reason}. Make room; driving goes on, and what is missing is"
-            " written as soon as there is room."
+        self._trouble = sentence(
+            "This drive is not being written down: {reason}. Make room; driving goes on, and what is missing is"
+            " written as soon as there is room.",
+            reason=reason,
         )
 
     def _over(self, reason: str) -> str:
-        return f"The recording ended at {_clock(self._last)}: {reason}, for too long. Driving goes on."
+        return sentence(
+            "The recording ended at {time}: {reason}, for too long. Driving goes on.",
+            time=_clock(self._last),
+            reason=reason,
+        )
 
     def _sync(self) -> None:
         try:
@@ -191,7 +197,9 @@ class Recorder:
         else:
             low = free < self._low_space
             self._shortage = (
-                f"The disk is nearly full: {free // MEGABYTE} MB are left. Make room soon." if low else None
+                sentence("The disk is nearly full: {left} MB are left. Make room soon.", left=free // MEGABYTE)
+                if low
+                else None
             )
 
     def _summary(self, *, ended: bool) -> RecordingSummary:
