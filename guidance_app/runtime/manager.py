@@ -166,13 +166,13 @@ class SessionManager:
             before = self._session
             for stop in self._stop_hearing.values():
                 stop()
+            before.close()  # before the next one starts, which may read from the same port
             self._session, self._idle = session, idle
             self._stop_hearing = {key: session.subscribe(hear) for key, hear in self._hearers.items()}
             self._episode += 1
             if self._started:
                 session.start()
             hearers = tuple(self._hearers.values())
-        before.close()
         for hear in hearers:
             try:
                 hear(session.snapshot())

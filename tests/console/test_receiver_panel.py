@@ -96,6 +96,8 @@ def test_while_driving_another_receiver_is_asked_for_twice(
 ) -> None:
     house.use_source(f"serial://{cable.path}?baud=115200")
     driven = house.manager.episode
+    reasons: set[str] = set()
+    house.manager.subscribe(lambda snapshot: reasons.add(snapshot.link.reason))
     send = Sender(server, house, cable)
     with viser_client(server) as client:
         send.until(client, lambda: client.control("Use this receiver"))
@@ -109,6 +111,8 @@ def test_while_driving_another_receiver_is_asked_for_twice(
         send.until(client, lambda: client.control("Yes, begin anew with it"))
         client.press("Yes, begin anew with it")
         send.until(client, lambda: house.manager.episode == driven + 1)
+        send.until(client, lambda: house.manager.snapshot().fix is not None)
+    assert not any("in use by another program" in one for one in reasons)
 
 
 def test_a_wrong_address_is_answered_and_nothing_ends(server: viser.ViserServer, house: House, cable: Cable) -> None:
