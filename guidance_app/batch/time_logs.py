@@ -14,15 +14,18 @@ from guidance_app.store.recordings import PACKED, SESSION, packed
 __all__ = ["job_of", "recording_of"]
 
 WIDTH = 3.0
-"""Metres where the log tells no width."""
+"""Metres where the log tells no width, or one that no implement has."""
+NARROWEST, WIDEST = 0.3, 60.0
+"""Metres that an implement may be wide."""
 FIRST_MOMENT = (1980, 1, 1, 0, 0, 0)
 
 
 def job_of(log: TimeLog, field: FieldDocument | None, width: float | None = None) -> Job:
     """Documents for looking at a log: its field, and an implement of its widest working width unless one is given."""
+    widest = log.widest if log.widest is not None and NARROWEST <= log.widest <= WIDEST else WIDTH
     return Job(
         tractor=Tractor(name="Tractor", antenna_height=0.0),
-        implement=Implement(name="Implement", working_width=width or log.widest or WIDTH, offset_back=0.0, length=1.0),
+        implement=Implement(name="Implement", working_width=width or widest, offset_back=0.0, length=1.0),
         receiver=Receiver(name="Receiver"),
         field=field,
     )

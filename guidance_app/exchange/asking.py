@@ -17,7 +17,15 @@ from guidance_app.documents import FieldDocument, Geometry, GuidanceLineDocument
 from guidance_app.geodesy import CoordinateSystem, DatumError, lonlat_from
 from guidance_app.language import sentence
 
-__all__ = ["ExchangeError", "ImportedField", "OpenQuestionError", "QuestionError", "ReadOptions", "changed_from"]
+__all__ = [
+    "ExchangeError",
+    "ImportedField",
+    "OpenQuestionError",
+    "QuestionError",
+    "ReadOptions",
+    "briefly",
+    "changed_from",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +95,11 @@ class OpenQuestionError(BoundaryError):
     def __init__(self, sentence: str, option: str) -> None:
         super().__init__(sentence)
         self.option = option
+
+
+def briefly(error: Exception) -> str:
+    """What a library says of damage, in at most a line."""
+    return " ".join(str(error).split())[:80]
 
 
 def changed_from(system: CoordinateSystem | CRS, options: ReadOptions) -> Callable[[list[Position]], list[Position]]:

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from guidance_app.boundary import BoundaryError, FieldDraft
 from guidance_app.coordinates import CornerError, two_coordinates
 from guidance_app.documents import FieldDocument, GuidanceLineDocument, Position
-from guidance_app.exchange.asking import ReadOptions
+from guidance_app.exchange.asking import ReadOptions, briefly
 from guidance_app.exchange.corner_table import Cell, draft_corners
 from guidance_app.exchange.files import Files
 from guidance_app.exchange.rings import closed
@@ -97,7 +97,7 @@ def _cut(lines: list[str], separator: str) -> list[list[str]]:
     try:
         return [list(row) for row in csv.reader(lines, delimiter=separator)]
     except csv.Error as error:
-        msg = sentence("it is not a list of corners ({reason})", reason=str(error))
+        msg = sentence("it is not a list of corners ({reason})", reason=briefly(error))
         raise BoundaryError(msg) from error
 
 

@@ -14,6 +14,7 @@ from functools import partial
 from pathlib import Path, PurePosixPath
 
 from guidance_app.boundary import BoundaryError
+from guidance_app.exchange.asking import briefly
 from guidance_app.language import sentence
 
 __all__ = ["MAX_BYTES", "MAX_FILES", "MAX_UNPACKED", "Files", "files_at", "files_in"]
@@ -150,7 +151,7 @@ def _members(content: bytes) -> dict[str, Callable[[], bytes]]:
     try:
         archive = zipfile.ZipFile(io.BytesIO(content))
     except (zipfile.BadZipFile, ValueError, OSError, NotImplementedError) as error:
-        msg = sentence("it is not a sound zip archive ({reason})", reason=str(error))
+        msg = sentence("it is not a sound zip archive ({reason})", reason=briefly(error))
         raise BoundaryError(msg) from error
     members = [one for one in archive.infolist() if not one.is_dir()]
     if len(members) > MAX_FILES:
@@ -198,7 +199,7 @@ def _member_content(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> bytes:
             content = file.read(MAX_BYTES + 1)
     except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError, RuntimeError) as error:
         msg = sentence(
-            "'{name}' in the archive is damaged: pack it again ({reason})", name=member.filename, reason=str(error)
+            "'{name}' in the archive is damaged: pack it again ({reason})", name=member.filename, reason=briefly(error)
         )
         raise BoundaryError(msg) from error
     if len(content) > MAX_BYTES:

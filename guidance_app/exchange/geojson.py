@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from guidance_app.boundary import BoundaryError, FieldDraft, PolygonRings
 from guidance_app.documents import FieldDocument, GuidanceLineDocument, LineGeometry, Position
-from guidance_app.exchange.asking import ReadOptions, changed_from
+from guidance_app.exchange.asking import ReadOptions, briefly, changed_from
 from guidance_app.exchange.files import Files
 from guidance_app.geodesy import crs_named
 from guidance_app.language import sentence
@@ -79,7 +79,7 @@ def _object(content: bytes) -> dict[str, Any]:
         msg = sentence("it is nested too deeply to be GeoJSON")
         raise BoundaryError(msg) from error
     except ValueError as error:
-        msg = sentence("it is not JSON ({reason})", reason=str(error))
+        msg = sentence("it is not JSON ({reason})", reason=briefly(error))
         raise BoundaryError(msg) from error
     if not isinstance(root, dict):
         msg = sentence("it is JSON, but not a GeoJSON object")

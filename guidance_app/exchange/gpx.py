@@ -5,7 +5,7 @@ import gpxpy.gpx
 
 from guidance_app.boundary import BoundaryError, FieldDraft
 from guidance_app.documents import Position
-from guidance_app.exchange.asking import ReadOptions
+from guidance_app.exchange.asking import ReadOptions, briefly
 from guidance_app.exchange.files import Files
 from guidance_app.exchange.rings import ring_of_track
 from guidance_app.exchange.xml_tree import parsed
@@ -21,7 +21,7 @@ def read(files: Files, options: ReadOptions) -> tuple[FieldDraft, ...]:  # noqa:
     try:
         found = gpxpy.parse(content)
     except (gpxpy.gpx.GPXException, ValueError) as error:
-        msg = sentence("it is not sound GPX ({reason})", reason=str(error))
+        msg = sentence("it is not sound GPX ({reason})", reason=briefly(error))
         raise BoundaryError(msg) from error
     tracks: list[tuple[str | None, list[Position]]] = [
         (track.name, [(point.longitude, point.latitude) for segment in track.segments for point in segment.points])

@@ -6,7 +6,6 @@ may stand in the boundary's polygon or in a polygon of their own. Guidance patte
 
 import math
 from collections.abc import Iterator, Sequence
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 import shapely
@@ -17,7 +16,7 @@ from guidance_app.documents import FieldDocument, GuidanceLineDocument, LineGeom
 from guidance_app.exchange.asking import ReadOptions
 from guidance_app.exchange.files import Files
 from guidance_app.exchange.rings import polygons_of
-from guidance_app.exchange.xml_tree import Element, children, first, local_name, parsed
+from guidance_app.exchange.xml_tree import Element, children, first, local_name, parsed, quoted
 from guidance_app.geodesy import FieldFrame
 from guidance_app.language import sentence
 
@@ -251,7 +250,7 @@ def field_element(document: FieldDocument, number: int = 1) -> str:
     )
     groups = "".join(_group_text(line, place) for place, line in enumerate(document.lines, start=1))
     return (
-        f'<PFD A="PFD{number}" C={quoteattr(designator(document.name))} D="{area}">'
+        f'<PFD A="PFD{number}" C={quoted(designator(document.name))} D="{area}">'
         f'<PLN A="{BOUNDARY}" C="{area}">{strings}</PLN>{groups}</PFD>'
     )
 
@@ -263,7 +262,7 @@ def designator(text: str) -> str:
 
 def _group_text(line: GuidanceLineDocument, number: int) -> str:
     corners = line.geometry.coordinates
-    name = quoteattr(designator(line.name))
+    name = quoted(designator(line.name))
     heading = ""
     if line.type == "a-plus":
         frame = FieldFrame(corners[0][1], corners[0][0])

@@ -7,7 +7,6 @@ program wrote, where the extended data ``guidance_app`` say what they are.
 
 import re
 from collections.abc import Iterator, Sequence
-from xml.sax.saxutils import escape, quoteattr
 
 from pydantic import ValidationError
 
@@ -15,7 +14,7 @@ from guidance_app.boundary import BoundaryError, FieldDraft, PolygonRings
 from guidance_app.documents import FieldDocument, GuidanceLineDocument, LineGeometry, Position
 from guidance_app.exchange.asking import ReadOptions
 from guidance_app.exchange.files import Files
-from guidance_app.exchange.xml_tree import Element, children, first, local_name, parsed, text_of
+from guidance_app.exchange.xml_tree import Element, children, first, local_name, parsed, quoted, text_of, written_text
 from guidance_app.language import sentence
 
 __all__ = ["coordinates_text", "document_of", "placemark", "read", "written"]
@@ -54,7 +53,7 @@ def document_of(name: str, marks: Sequence[str]) -> bytes:
     body = "\n".join(marks)
     return (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
-        f'<kml xmlns="http://www.opengis.net/kml/2.2">\n<Document>\n<name>{escape(name)}</name>\n{body}\n'
+        f'<kml xmlns="http://www.opengis.net/kml/2.2">\n<Document>\n<name>{written_text(name)}</name>\n{body}\n'
         "</Document>\n</kml>\n"
     ).encode()
 
@@ -62,10 +61,10 @@ def document_of(name: str, marks: Sequence[str]) -> bytes:
 def placemark(name: str, geometry: str, data: dict[str, str]) -> str:
     """A placemark; ``geometry`` is KML, ``data`` its extended data without the empty ones."""
     extended = "".join(
-        f"<Data name={quoteattr(key)}><value>{escape(value)}</value></Data>" for key, value in data.items() if value
+        f"<Data name={quoted(key)}><value>{written_text(value)}</value></Data>" for key, value in data.items() if value
     )
     inner = f"<ExtendedData>{extended}</ExtendedData>" if extended else ""
-    return f"<Placemark><name>{escape(name)}</name>{inner}{geometry}</Placemark>"
+    return f"<Placemark><name>{written_text(name)}</name>{inner}{geometry}</Placemark>"
 
 
 def coordinates_text(corners: Sequence[Position]) -> str:

@@ -17,7 +17,7 @@ from pyproj import CRS
 
 from guidance_app.boundary import BoundaryError, FieldDraft
 from guidance_app.documents import FieldDocument, GuidanceLineDocument, Position
-from guidance_app.exchange.asking import OpenQuestionError, ReadOptions, changed_from
+from guidance_app.exchange.asking import OpenQuestionError, ReadOptions, briefly, changed_from
 from guidance_app.exchange.files import Files
 from guidance_app.exchange.rings import polygons_of
 from guidance_app.geodesy import crs_named
@@ -36,6 +36,8 @@ WGS84_PRJ = (
     'GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],'
     'PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]]'
 )
+DAMAGED = (shapefile.ShapefileException, struct.error, ValueError, LookupError, EOFError, TypeError, OverflowError)
+"""What pyshp raises at bytes that are no shapefile."""
 LINES = "lines"
 """The layer with the guidance lines."""
 LONGEST_NAME = 120
@@ -160,7 +162,7 @@ def _system(files: Files, options: ReadOptions) -> "CRS":
     try:
         return crs_named(text)
     except ValueError as error:
-        msg = sentence("its .prj cannot be understood: {reason}", reason=str(error))
+        msg = sentence("its .prj cannot be understood: {reason}", reason=briefly(error))
         raise BoundaryError(msg) from error
 
 
@@ -169,8 +171,8 @@ def _shapes(files: Files) -> list[list[Ring]]:
     try:
         with _reader(files) as reader:
             return [_rings(shape) for shape in reader.iterShapes()]
-    except (shapefile.ShapefileException, struct.error, ValueError, IndexError, EOFError, KeyError) as error:
-        msg = sentence("it is not a sound shapefile ({reason})", reason=str(error))
+    except DAMAGED as error:
+        msg = sentence("it is not a sound shapefile ({reason})", reason=briefly(error))
         raise BoundaryError(msg) from error
 
 
@@ -184,8 +186,8 @@ def _kind(files: Files) -> int:
     try:
         with _reader(files) as reader:
             return int(reader.shapeType)
-    except (shapefile.ShapefileException, struct.error, ValueError, EOFError) as error:
-        msg = sentence("it is not a sound shapefile ({reason})", reason=str(error))
+    except DAMAGED as error:
+        msg = sentence("it is not a sound shapefile ({reason})", reason=briefly(error))
         raise BoundaryError(msg) from error
 
 
@@ -259,8 +261,8 @@ def _raw_records(content: bytes) -> list[Record]:
                 {key: "" if value is None else str(value) for key, value in record.as_dict().items()}
                 for record in reader.iterRecords()
             ]
-    except (shapefile.ShapefileException, struct.error, ValueError, IndexError, EOFError) as error:
-        msg = sentence("its .dbf file is not sound ({reason})", reason=str(error))
+    except DAMAGED as error:
+        msg = sentence("its .dbf file is not sound ({reason})", reason=briefly(error))
         raise BoundaryError(msg) from error
 
 

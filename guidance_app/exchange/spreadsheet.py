@@ -6,7 +6,7 @@ import zipfile
 from python_calamine import CalamineError, CalamineWorkbook
 
 from guidance_app.boundary import BoundaryError, FieldDraft
-from guidance_app.exchange.asking import OpenQuestionError, ReadOptions
+from guidance_app.exchange.asking import OpenQuestionError, ReadOptions, briefly
 from guidance_app.exchange.corner_table import Cell, draft_corners
 from guidance_app.exchange.files import MAX_UNPACKED, MEGABYTE, Files
 from guidance_app.language import sentence
@@ -24,7 +24,7 @@ def read(files: Files, options: ReadOptions) -> tuple[FieldDraft, ...]:
         workbook = CalamineWorkbook.from_filelike(io.BytesIO(content))
         sheets = [(name, _cells(workbook, name)) for name in workbook.sheet_names]
     except (CalamineError, OSError, ValueError) as error:
-        msg = sentence("it is not a sound spreadsheet ({reason})", reason=str(error))
+        msg = sentence("it is not a sound spreadsheet ({reason})", reason=briefly(error))
         raise BoundaryError(msg) from error
     reasons = []
     for name, rows in sheets:
@@ -50,7 +50,7 @@ def _check_unpacked(content: bytes) -> None:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             total = sum(one.file_size for one in archive.infolist())
     except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
-        msg = sentence("it is not a sound spreadsheet ({reason})", reason=str(error))
+        msg = sentence("it is not a sound spreadsheet ({reason})", reason=briefly(error))
         raise BoundaryError(msg) from error
     if total > MAX_UNPACKED:
         msg = sentence(

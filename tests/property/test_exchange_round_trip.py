@@ -147,3 +147,11 @@ def test_any_csv_reader_reads_our_list_of_corners() -> None:
         if row["part"] == "boundary" and row["ring"] == "0"
     ]
     assert [tuple(corner) for corner in document.boundary.coordinates[0][:-1]] == ring
+
+
+def test_control_characters_in_notes_do_not_break_a_file() -> None:
+    document = field_with_lines().model_copy(update={"notes": "wet\x0b\x00 in spring\ufffe <&>"})
+    (field,) = read_fields(written_as(".kml", document), "x.kml")
+    assert field.document.notes == "wet   in spring  <&>"
+    for ending in WRITERS:
+        assert read_fields(written_as(ending, document), f"x{ending}")

@@ -4,6 +4,7 @@ import io
 import zipfile
 from collections.abc import Sequence
 
+import openpyxl
 import shapefile
 from pyproj import Transformer
 
@@ -24,6 +25,7 @@ __all__ = [
     "kml_of",
     "one",
     "shapefile_parts",
+    "spreadsheet_of",
     "task_data",
     "zipped",
 ]
@@ -106,3 +108,13 @@ LATLON = [(f"{latitude:.9f}", f"{longitude:.9f}") for longitude, latitude in REC
 def in_system(epsg: int) -> list[tuple[float, float]]:
     """East, north of the rectangle moved to Japan or where the system is at home."""
     return [Transformer.from_crs(4326, epsg, always_xy=True).transform(*corner) for corner in RECTANGLE[:-1]]
+
+
+def spreadsheet_of(rows: Sequence[Sequence[object]]) -> bytes:
+    """An XLSX workbook with one sheet of these rows."""
+    book = openpyxl.Workbook()
+    for row in rows:
+        book["Sheet"].append(list(row))
+    target = io.BytesIO()
+    book.save(target)
+    return target.getvalue()

@@ -1,9 +1,9 @@
 """A drive as GPX: the filtered track of the rear axle and the raw track of the antenna, cut where it was silent."""
 
 from collections.abc import Callable
-from xml.sax.saxutils import escape
 
 from guidance_app.exchange.drives.record import DriveEpoch, DriveExport, DrivePlace, time_text, tracks_of
+from guidance_app.exchange.xml_tree import written_text
 
 __all__ = ["written"]
 
@@ -25,7 +25,7 @@ def _track(name: str, tracks: list[list[DriveEpoch]], place_of: Callable[[DriveE
         "<trkseg>\n" + "".join(_point(epoch, place) for epoch in track if (place := place_of(epoch))) + "</trkseg>\n"
         for track in tracks
     )
-    return f"<trk><name>{escape(name)}</name>\n{segments}</trk>\n"
+    return f"<trk><name>{written_text(name)}</name>\n{segments}</trk>\n"
 
 
 def _point(epoch: DriveEpoch, place: DrivePlace) -> str:

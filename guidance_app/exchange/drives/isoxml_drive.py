@@ -7,12 +7,12 @@ The log holds the filtered position, the work state (DDI 141), the working width
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from itertools import pairwise
-from xml.sax.saxutils import quoteattr
 
 from guidance_app.exchange.drives.record import DriveEpoch, DriveExport
 from guidance_app.exchange.isoxml import TASKDATA, designator, field_element, task_data
 from guidance_app.exchange.shapefile_format import archive_of
 from guidance_app.exchange.time_log import Instant, LoggedValue, written_log
+from guidance_app.exchange.xml_tree import quoted
 
 __all__ = ["LAYOUT", "written"]
 
@@ -62,13 +62,13 @@ def _instant(epoch: DriveEpoch, width: int) -> Instant:
 
 def _device(drive: DriveExport) -> str:
     data = "".join(
-        f'<DPD A="{number}" B="{ddi:04X}" C="1" D="8" E={quoteattr(name)}/>'
+        f'<DPD A="{number}" B="{ddi:04X}" C="1" D="8" E={quoted(name)}/>'
         for number, (ddi, name) in enumerate(NAMES, start=2)
     )
     objects = "".join(f'<DOR A="{number}"/>' for number in range(2, 2 + len(NAMES)))
     return (
-        f'<DVC A="DVC-1" B={quoteattr(designator(drive.implement))} D="A000860000000000" F="00000000000000"'
-        f' G="FF000000406E65"><DET A="{ELEMENT}" B="1" C="1" D={quoteattr(designator(drive.implement))} E="1" F="0">'
+        f'<DVC A="DVC-1" B={quoted(designator(drive.implement))} D="A000860000000000" F="00000000000000"'
+        f' G="FF000000406E65"><DET A="{ELEMENT}" B="1" C="1" D={quoted(designator(drive.implement))} E="1" F="0">'
         f"{objects}</DET>{data}</DVC>"
     )
 
@@ -82,7 +82,7 @@ def _task(drive: DriveExport, timed: Sequence[DriveEpoch]) -> str:
         begin, end = (_moment(epoch) for epoch in (timed[0], timed[-1]))
         inside = f'<TIM A="{begin}" B="{end}" D="{EFFECTIVE}">{values}</TIM><TLG A="{LOG}" C="1"/>'
     allocation = '<DAN A="A000860000000000" C="DVC-1"/>'
-    return f'<TSK A="TSK1" B={quoteattr(designator(drive.name))}{field} G="{COMPLETED}">{inside}{allocation}</TSK>'
+    return f'<TSK A="TSK1" B={quoted(designator(drive.name))}{field} G="{COMPLETED}">{inside}{allocation}</TSK>'
 
 
 def _moment(epoch: DriveEpoch) -> str:
