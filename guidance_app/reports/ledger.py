@@ -195,7 +195,7 @@ def columns() -> tuple[tuple[str, str], ...]:
         (message("Error rms"), "cm"),
         (message("Error 95 %"), "cm"),
         (message("Product"), ""),
-        (message("Rate"), ""),
+        (message("Application rate"), ""),
         (message("Fuel"), ""),
         (message("Notes"), ""),
     )
