@@ -24,7 +24,7 @@ from guidance_app.view.review import COLOURINGS, ColourBy, Coloured, coloured_tr
 
 __all__ = ["Looking"]
 
-TRACK, OTHER = "review", "review other"
+TRACK, OTHER = "review", "review-other"
 GREEN, VIOLET = "#2f9e44", "#7048e8"
 OTHER_COLOUR = (112, 72, 232)
 MEDIA_TYPES = {
