@@ -1,7 +1,8 @@
 """``gpsd://host``: a receiver that gpsd looks after, here or on another machine; it passes on what the receiver says.
 
-gpsd is asked for the raw stream. Its own messages are JSON lines, which the framing of sentences drops; of them only
-the list of devices is looked at, because a gpsd without a receiver is silent for ever.
+gpsd is asked for the raw stream, and for sentences of its own making where the receiver speaks binary (gpsd itself sets
+some receivers so); of those the raw stream holds hexadecimal lines. These and gpsd's own messages, JSON lines, are
+dropped by the framing of sentences. Only the list of devices is looked at: a gpsd without a receiver is silent for ever.
 """
 
 import threading
@@ -13,7 +14,7 @@ from guidance_app.sources.kept import Kept, LinkError
 __all__ = ["open_gpsd"]
 
 PORT = 2947
-WATCH = b'?WATCH={"enable":true,"raw":1};\n'
+WATCH = b'?WATCH={"enable":true,"raw":1,"nmea":true};\n'
 NO_DEVICE = b'"devices":[]'
 GREETING_BYTES = 2000
 """The list of devices comes within the first so many bytes."""

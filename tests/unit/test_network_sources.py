@@ -175,7 +175,7 @@ def test_gpsd_is_asked_for_the_raw_stream() -> None:
     with server(answer) as daemon, reading(quick(f"gpsd://127.0.0.1:{daemon.port}")) as heard:
         heard.wait(lambda one: epoch(NOON) in one.data)
         heard.stop()
-    assert asked == [b'?WATCH={"enable":true,"raw":1};\n']
+    assert asked == [b'?WATCH={"enable":true,"raw":1,"nmea":true};\n']
 
 
 def test_a_gpsd_without_a_receiver_is_said() -> None:

@@ -33,7 +33,7 @@ class Start:
             self._width = gui.add_number(
                 words("{title} ({unit})", title=words("Working width"), unit="m"), 3.0, min=0.3, max=60.0, step=0.1
             )
-            self._source = gui.add_text(words("Receiver"), "sim:")
+            self._source = gui.add_text(words("Receiver"), hands.house.manager.job.receiver.source)
             now = gui.add_button(words("Drive now"), color="green")
 
         @now.on_click
