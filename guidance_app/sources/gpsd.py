@@ -2,7 +2,7 @@
 
 gpsd is asked for the raw stream, and for sentences of its own making where the receiver speaks binary (gpsd itself sets
 some receivers so); of those the raw stream holds hexadecimal lines. These and gpsd's own messages, JSON lines, are
-dropped by the framing of sentences. Only the list of devices is looked at: a gpsd without a receiver is silent for ever.
+dropped by the framing of sentences. Only the list of devices is looked at: a gpsd without a receiver stays silent.
 """
 
 import threading
