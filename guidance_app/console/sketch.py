@@ -47,6 +47,7 @@ class Sketch:
         self._world = world
         self._root = f"{root}/sketch"
         self._nodes: dict[str, viser.SceneNodeHandle] = {}
+        self._picture: viser.SceneNodeHandle | None = None
         self._tapped: Tapped | None = None
         self._listens = False
 
@@ -110,6 +111,19 @@ class Sketch:
             thickness_units="screen",
         )
 
+    def picture(self, glb: bytes | None) -> None:
+        """A picture that lies on the ground below everything, until another or None; ``clear`` leaves it."""
+        before, self._picture = self._picture, None
+        if before is not None:
+            before.remove()
+        if glb is not None:
+            self._picture = self._client.scene.add_glb(f"{self._root}/picture", glb, cast_shadow=False)
+
+    @property
+    def has_picture(self) -> bool:
+        """False when the scene was made anew since ``picture``."""
+        return self._picture is not None
+
     def remove(self, name: str) -> None:
         """Takes one part away; one that is not there is no error."""
         node = self._nodes.pop(name, None)
@@ -125,6 +139,7 @@ class Sketch:
     def forget(self) -> None:
         """The scene was made anew: nothing of the sketch is left there."""
         self._nodes.clear()
+        self._picture = None
 
     def hear_taps(self, tapped: Tapped | None) -> None:
         """From now on each tap on the ground calls ``tapped`` with east and north; None ends that."""

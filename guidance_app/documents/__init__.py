@@ -20,6 +20,7 @@ from guidance_app.documents.ground import (
     ShiftRecord,
 )
 from guidance_app.documents.machines import HitchKind, Implement, Receiver, Tractor
+from guidance_app.documents.maps import MatchedPoint, PhotoMap
 from guidance_app.documents.operations import Direction, Method, Operation
 from guidance_app.documents.settings import LightBarSteps, Settings, Units
 
@@ -35,9 +36,11 @@ __all__ = [
     "Job",
     "LightBarSteps",
     "LineGeometry",
+    "MatchedPoint",
     "Method",
     "Name",
     "Operation",
+    "PhotoMap",
     "Position",
     "Receiver",
     "Ring",

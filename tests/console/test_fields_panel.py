@@ -1,5 +1,6 @@
 """The fields panel: every way to a field ends in the preview, only the preview stores, and changes are undone."""
 
+import io
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -9,6 +10,7 @@ import httpx
 import numpy as np
 import pytest
 import viser
+from PIL import Image
 from support.snapshots import SetSession, field_job, field_snapshot
 from support.stage import running_viser
 from support.viser_client import ViserClient, viser_client
@@ -19,6 +21,7 @@ from guidance_app.documents import FieldDocument
 from guidance_app.model import Pose
 from guidance_app.runtime import SessionManager
 from guidance_app.store import Store, copy_sample
+from guidance_app.store.photo_maps import list_maps
 
 MOST_REDRAWS = 400
 SOON_S = 0.03
@@ -261,6 +264,53 @@ def test_a_list_in_metres_asks_for_its_zone_and_is_read_again(yard: Yard) -> Non
     yard.says(r"[34]\.\d\d ha")
     yard.press("Store this field")
     yard.until(lambda: len(yard.names) == 2)
+
+
+def test_a_field_is_drawn_over_a_photo_that_two_points_lay(yard: Yard) -> None:
+    made = io.BytesIO()
+    Image.new("RGB", (400, 300), (40, 120, 60)).save(made, "PNG")
+    yard.press("Photo")
+    yard.until(lambda: "data-upload" in yard.client.words())
+    token = re.search(r'data-upload="([^"]+)"', yard.client.words())
+    assert token is not None
+    take = yard.house.files.taker(token[1])
+    assert take is not None
+    take("from above.png", made.getvalue())
+    yard.until(lambda: "/w/sketch/picture" in yard.client.nodes)
+    for spot, place in (((-50.0, 0.0), "47.5000, 8.5000"), ((50.0, 0.0), "47.5000, 8.5040")):
+        yard.client.tap(*spot)
+        yard.until(lambda: "/w/sketch/spot" in yard.client.nodes)
+        yard.client.set("Latitude, longitude of the spot", place)
+        yard.press("As typed")
+        yard.until(lambda: "/w/sketch/spot" not in yard.client.nodes)
+    yard.says("a pixel is")
+    yard.press("Keep the map")
+    store = yard.house.store
+    assert store is not None
+    yard.until(lambda: [one.document.name for one in list_maps(store.root)] == ["from above"])
+    yard.press("Done")
+    yard.press("Tap")
+    yard.says("Tap each corner")
+    for x, y in SQUARE:
+        yard.client.tap(x, y)
+    yard.says("4 corners")
+    yard.press("Preview")
+    yard.press("Store this field")
+    yard.until(lambda: "New field" in yard.names)
+
+
+def test_a_picture_that_is_none_is_refused_and_spots_need_a_tap(yard: Yard) -> None:
+    yard.press("Photo")
+    yard.until(lambda: "data-upload" in yard.client.words())
+    token = re.search(r'data-upload="([^"]+)"', yard.client.words())
+    assert token is not None
+    take = yard.house.files.taker(token[1])
+    assert take is not None
+    take("notes.png", b"nothing")
+    yard.says(r"notes\.png is no picture")
+    yard.client.set("Latitude, longitude of the spot", "47.5, 8.5")
+    yard.press("As typed")
+    yard.says("Tap the spot")
 
 
 def test_a_boundary_is_driven_while_the_drive_goes_on(driven_yard: Yard) -> None:

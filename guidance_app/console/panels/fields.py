@@ -13,9 +13,11 @@ from guidance_app.console.files import Download, link_html
 from guidance_app.console.registering.atelier import Atelier, Way, area_words
 from guidance_app.console.registering.by_driving import Driving
 from guidance_app.console.registering.by_file import FromFile
+from guidance_app.console.registering.by_photo import OnPhoto
 from guidance_app.console.registering.by_tapping import Tapping
 from guidance_app.console.registering.by_typing import Typing
 from guidance_app.console.registering.editing import Editing
+from guidance_app.console.registering.photo_layer import PhotoLayer
 from guidance_app.console.registering.preview import Preview
 from guidance_app.console.widgets import Shown, buttons, notice_html, rows_html
 from guidance_app.documents import FieldDocument, Operation
@@ -32,6 +34,7 @@ WAYS: dict[str, Callable[[Atelier], Way]] = {
     message("Drive"): Driving,
     message("Type"): Typing,
     message("File"): FromFile,
+    message("Photo"): OnPhoto,
 }
 
 
@@ -51,13 +54,14 @@ class Fields:
         self._way: Way | None = None
         self._removed: Removed | None = None
         self._chosen: str | None = None
-        self._atelier = Atelier(gui, hands, self._offer, self._list)
+        self._atelier = Atelier(gui, hands, self._offer, self._list, PhotoLayer(hands.sketch))
         self._card = Card(gui)
         self._list()
 
     def show(self, desk: Desk) -> None:
         """Brings the way in hand up to now."""
         del desk
+        self._atelier.layer.show(self._atelier.frame())
         if self._way is not None:
             self._way.show()
 

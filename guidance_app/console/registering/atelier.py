@@ -8,6 +8,7 @@ import viser
 
 from guidance_app.boundary import CheckedField
 from guidance_app.console.desk import Hands
+from guidance_app.console.registering.photo_layer import PhotoLayer
 from guidance_app.documents import FieldDocument, Units
 from guidance_app.geodesy import FieldFrame
 from guidance_app.language import Words
@@ -24,11 +25,12 @@ class Atelier:
     hands: Hands
     offer: Callable[[tuple[CheckedField, ...], str], None]
     cancel: Callable[[], None]
+    layer: PhotoLayer
 
     def frame(self) -> FieldFrame | None:
-        """The frame of the map as it is shown; None while nothing on it has a place on earth."""
+        """The frame of the map as it is shown, else of the photo on it; None while nothing has a place on earth."""
         origin = self.hands.desk().snapshot.origin_deg
-        return None if origin is None else FieldFrame(*origin)
+        return self.layer.frame() if origin is None else FieldFrame(*origin)
 
     def unique_name(self, wanted: str) -> str:
         """``wanted``, or with a number behind it when a field is called so already."""
