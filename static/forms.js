@@ -23,3 +23,16 @@ addEventListener(
   },
   true,
 );
+
+// A picture beside buttons is pressed as the button of its words.
+addEventListener("click", (event) => {
+  const card = event.target instanceof Element && event.target.closest("[data-press]");
+  if (!card) return;
+  const place = card.closest("[role=tabpanel]") ?? document;
+  for (const button of place.querySelectorAll("button")) {
+    if (button.textContent.replace(/^● /, "") === card.dataset.press) {
+      button.click();
+      return;
+    }
+  }
+});

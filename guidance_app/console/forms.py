@@ -14,7 +14,8 @@ from typing import Any, Generic, TypeVar
 import viser
 from pydantic import BaseModel
 
-from guidance_app.console.widgets import Shown
+from guidance_app.console.desk import Desk
+from guidance_app.console.widgets import Choice, Shown
 from guidance_app.documents import Units
 from guidance_app.language import Words
 from guidance_app.view.drawing_machines import PICTURES
@@ -50,6 +51,11 @@ label[for]{color:var(--mantine-color-text);letter-spacing:0;font-size:1.05em}
 .g-table{margin:0 .75em .6em;font-size:.7em;border-collapse:collapse;width:calc(100% - 1.5em)}
 .g-table td,.g-table th{border-bottom:1px solid var(--mantine-color-default-border);padding:.25em .3em;text-align:left;
  overflow-wrap:anywhere}
+*:has(+div>.g-hint[data-keys=cards]){position:absolute;width:1px;height:1px;overflow:hidden;opacity:0}
+.g-cards{display:grid;grid-template-columns:repeat(2,1fr);gap:.4em;margin:0 .75em .4em}
+.g-card{border:2px solid var(--mantine-color-default-border);border-radius:.35em;padding:.25em;cursor:pointer;
+ font-size:.62em;text-align:center;line-height:1.2}
+.g-card.g-chosen{border-color:#e8590c;font-weight:650}
 .g-said{margin:.1em .75em .45em;font-size:.72em;line-height:1.35;overflow-wrap:anywhere}
 </style>"""
 """Sizes for gloves and a shaking seat; only in sight while forms are."""
@@ -73,8 +79,10 @@ def picture_html(svg: str) -> str:
 class Form(Generic[M]):
     """The inputs of one document in the panel that is open now. ``read`` gives the document or shows what is wrong.
 
-    ``initial`` are values to begin with. ``options`` make a choice of a text member, ``leave_out`` are members that are
-    not shown and keep their value. ``touched`` is called on viser's loop after each change.
+    ``initial`` are values to begin with. ``options`` make a list to choose from of a text member, ``members`` are those
+    that are shown, in that order; others keep their value. ``after`` adds what a panel has to say below an entry;
+    ``cards`` are choices whose buttons are out of sight because pictures below them are pressed instead. ``touched`` is
+    called on viser's loop after each change.
     """
 
     def __init__(  # noqa: PLR0913 - a call names each
@@ -86,10 +94,12 @@ class Form(Generic[M]):
         units: Units,
         *,
         options: Options | None = None,
-        leave_out: Sequence[str] = (),
+        members: Sequence[str] | None = None,
+        after: Mapping[str, Callable[[], None]] | None = None,
+        cards: Sequence[str] = (),
         touched: Callable[[], None] | None = None,
     ) -> None:
-        self._view = FormView(model, entries_of(model, leave_out), dict(initial), words, units)
+        self._view = FormView(model, entries_of(model, members), dict(initial), words, units)
         self._touched = touched or (lambda: None)
         self._wrong: Mapping[str, str] = {}
         self._drawn: dict[str, Any] | None = None
@@ -98,10 +108,14 @@ class Form(Generic[M]):
         draft = self._view.draft()
         last_with = {entry.picture: entry.member for entry in self._view.entries if entry.picture}
         for entry in self._view.entries:
-            self._inputs[entry.member] = _Input(gui, self._view, entry, draft[entry.member], (options or {}))
-            self._inputs[entry.member].on_touch(self._touch)
+            made = _Input(gui, self._view, entry, draft[entry.member], (options or {}))
+            made.on_touch(self._touch)
+            made.cards = entry.member in cards
+            self._inputs[entry.member] = made
             if entry.picture and last_with[entry.picture] == entry.member:
                 self._pictures[entry.picture] = Shown(gui)
+            if after is not None and entry.member in after:
+                after[entry.member]()
         self._wrong_whole = Shown(gui)
         self.show()
 
@@ -140,19 +154,25 @@ class Form(Generic[M]):
         self._wrong = {name: words for name, words in self._wrong.items() if name not in (member, "")}
         self._touched()
 
-    def show(self) -> None:
+    def show(self, desk: Desk | None = None) -> None:
         """Which entries apply, what is wrong with them, and the pictures, as they are; cheap when nothing is new."""
+        del desk
         draft = self.draft
         drawn = {"draft": draft, "wrong": dict(self._wrong)}
         if drawn == self._drawn:
             return
         self._drawn = drawn
         for entry in self._view.entries:
-            self._inputs[entry.member].show(applies=entry.applies(draft), wrong=self._wrong.get(entry.member, ""))
+            self._inputs[entry.member].show(
+                applies=self._view.applies(entry, draft), wrong=self._wrong.get(entry.member, "")
+            )
         values = self._view.seen(draft)
         for name, shown in self._pictures.items():
             shown.show(picture_html(PICTURES[name](values, self._view.words, self._length)))
         self._wrong_whole.show(message_html(self._wrong_anywhere()))
+
+    def close(self) -> None:
+        """A plain form draws nothing outside of its panel."""
 
     def _wrong_anywhere(self) -> str:
         """What belongs to no entry; else where to look, because the entry itself may be out of sight."""
@@ -166,53 +186,72 @@ class Form(Generic[M]):
 
 
 class _Input:
-    """One entry: its input, and what stands under it."""
+    """One entry: its input, and what stands under it. Few choices are buttons side by side, names are a list."""
 
     def __init__(self, gui: viser.GuiApi, view: FormView[Any], entry: Entry, value: Any, options: Options) -> None:
         self._entry = entry
         words = view.words
         unit = unit_text(entry, view.units)
-        title = words(entry.title)
+        title = words("{title} ({unit})", title=words(entry.title), unit=unit) if unit else words(entry.title)
         labels = entry.choices or tuple(options.get(entry.member, ()))
         if labels and value and all(one != value for one, _ in labels):
             labels = (*labels, (str(value), words("{name} (not there)", name=value)))
-        said = {one: words.say(label) for one, label in labels}
-        self._values = {label: one for one, label in said.items()}
+        self._values = {words.say(label): one for one, label in labels}
+        self._chosen = str(value)
         self._handle: Any
         if entry.kind is EntryKind.SWITCH:
             self._handle = gui.add_checkbox(title, bool(value))
+        elif entry.choices:
+            self._handle = gui.add_button_group(title, self._marked())
         elif labels:
-            first = said.get(str(value), next(iter(self._values)))
+            first = next((label for label, one in self._values.items() if one == value), next(iter(self._values)))
             self._handle = gui.add_dropdown(title, tuple(self._values), initial_value=first)
         else:
-            self._handle = gui.add_text(f"{title} ({unit})" if unit else title, str(value))
+            self._handle = gui.add_text(title, str(value))
         self._under = Shown(gui)
         self._hint = hint_text(entry, words, view.units)
+        self.cards = False
+
+    def _marked(self) -> tuple[str, ...]:
+        return tuple(f"{Choice.MARK}{label}" if one == self._chosen else label for label, one in self._values.items())
 
     @property
     def value(self) -> Any:
         """The text, the chosen value or the switch."""
+        if self._entry.choices:
+            return self._chosen
         value = self._handle.value
         return self._values.get(value, value) if self._values else value
 
     def set(self, value: Any) -> None:
         """Shows another value."""
-        self._handle.value = next((label for label, one in self._values.items() if one == value), value)
+        if self._entry.choices:
+            self._chosen = str(value)
+        else:
+            self._handle.value = next((label for label, one in self._values.items() if one == value), value)
 
     def on_touch(self, touched: Callable[[str], None]) -> None:
         """Calls ``touched`` with the member, on viser's loop."""
+        listen = self._handle.on_click if self._entry.choices else self._handle.on_update
 
-        @self._handle.on_update  # type: ignore[untyped-decorator]  # any of viser's inputs
-        async def _(_: object) -> None:
+        @listen  # type: ignore[untyped-decorator]  # any of viser's inputs
+        async def _(event: viser.GuiEvent[Any]) -> None:
+            if self._entry.choices:
+                pressed = str(event.target.value).removeprefix(Choice.MARK)
+                self._chosen = self._values.get(pressed, self._chosen)
             touched(self._entry.member)
 
     def show(self, *, applies: bool, wrong: str) -> None:
         """There or not, and what stands under it."""
         self._handle.visible = applies
+        if self._entry.choices and tuple(self._handle.options) != self._marked():
+            self._handle.options = self._marked()
         self._under.show(self._under_html(wrong) if applies else "")
 
     def _under_html(self, wrong: str) -> str:
         """The kind of keyboard goes along, for the page's script."""
+        if self.cards:
+            return '<div class="g-hint" data-keys="cards"></div>'
         whole = self._entry.kind is EntryKind.WHOLE
         plain = self._entry.kind in (EntryKind.NUMBER, EntryKind.WHOLE) and (self._entry.low or 0.0) >= 0.0
         keys = ("numeric" if whole else "decimal") if plain else "text"

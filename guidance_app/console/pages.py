@@ -11,7 +11,7 @@ import viser
 
 from guidance_app.console.desk import Desk, Hands
 
-__all__ = ["Page", "Pages", "press"]
+__all__ = ["Page", "Pages", "Still", "press"]
 
 
 class Page(Protocol):
@@ -20,6 +20,21 @@ class Page(Protocol):
     def show(self, desk: Desk) -> None:
         """Brings its words and widgets up to what is."""
         ...
+
+    def close(self) -> None:
+        """Another page follows: takes away what it has left outside of the tab."""
+        ...
+
+
+class Still:
+    """A page on which nothing changes by itself, and that leaves nothing behind."""
+
+    def show(self, desk: Desk) -> None:
+        """It stands still."""
+        del desk
+
+    def close(self) -> None:
+        """It has left nothing."""
 
 
 Color = Literal["gray", "green", "red", "orange"]
@@ -54,6 +69,8 @@ class Pages:
             self._page.show(desk)
 
     def _open(self, make: MakePage) -> None:
+        if self._page is not None:
+            self._page.close()
         if self._inner is not None:
             self._inner.remove()
         with self._outer:

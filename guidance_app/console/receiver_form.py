@@ -6,7 +6,7 @@ from typing import Any
 
 import viser
 
-from guidance_app.console.desk import Hands
+from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.forms import Form
 from guidance_app.console.widgets import Shown
 from guidance_app.documents import Receiver
@@ -53,8 +53,9 @@ class ReceiverForm:
     """The plain form with a list of what is plugged in above it, and a sentence on the chosen filter below."""
 
     def __init__(
-        self, hands: Hands, gui: viser.GuiApi, initial: Mapping[str, Any], touched: Callable[[], None]
+        self, hands: Hands, gui: viser.GuiApi, initial: Mapping[str, Any], touched: Callable[[], None], gathered: None
     ) -> None:
+        del gathered
         self._words = hands.words
         self._hands = hands
         self._found: dict[str, str] = {}
@@ -110,8 +111,11 @@ class ReceiverForm:
         """Puts sentences under entries."""
         self._form.say(wrong)
 
-    def show(self) -> None:
+    def close(self) -> None:
+        """It draws nothing outside of its panel."""
+
+    def show(self, desk: Desk | None = None) -> None:
         """The sentence follows the chosen filter."""
-        self._form.show()
+        self._form.show(desk)
         about = FILTER_WORDS.get(str(self._form.draft["filter"]))
         self._about.show("" if about is None else f'<div class="g-said">{html.escape(self._words(about[1]))}</div>')

@@ -14,10 +14,10 @@ import viser
 from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.differences import differences_html
 from guidance_app.console.forms import heading_html
-from guidance_app.console.pages import Pages, press
-from guidance_app.console.widgets import Shown, buttons, notice_html
+from guidance_app.console.pages import Pages, Still, press
+from guidance_app.console.widgets import buttons, notice_html
 from guidance_app.documents import FieldDocument, Implement, Operation, Receiver, Tractor
-from guidance_app.store import Removed, Store, StoreConflictError, Stored, StoreError
+from guidance_app.store import Removed, StoreConflictError, Stored, StoreError
 
 __all__ = ["DocumentForm", "Shelf", "ShelfWords", "Shelves"]
 
@@ -40,8 +40,12 @@ class DocumentForm(Protocol):
         """Whether something was typed."""
         ...
 
-    def show(self) -> None:
-        """Brings it up to what was touched."""
+    def show(self, desk: Desk | None = None) -> None:
+        """Brings it up to what was touched, and to what is."""
+        ...
+
+    def close(self) -> None:
+        """Takes away what it has drawn outside of the panel."""
         ...
 
 
@@ -54,14 +58,16 @@ class ShelfWords:
     empty: str
 
 
-MakeForm = Callable[[viser.GuiApi, Mapping[str, Any], Callable[[], None]], DocumentForm]
+MakeForm = Callable[[viser.GuiApi, Mapping[str, Any], Callable[[], None], Any], DocumentForm]
+"""From the values to begin with, whom to tell of a touch, and what the shelf has gathered."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shelf(Generic[N]):
     """One kind of documents. ``line`` is what stands beside a name; ``form`` makes a form from values to begin with.
 
-    ``listed`` leaves documents out of the list; ``field_of`` is the field that an operation belongs to.
+    ``gather`` reads what the form needs, on a thread of its own. ``missing`` says what must be registered before, None
+    when nothing is. ``also`` is what else can be done with a stored document: its words, and what is then called.
     """
 
     kind: type[N]
@@ -69,11 +75,9 @@ class Shelf(Generic[N]):
     line: Callable[[N], str]
     form: MakeForm
     fresh: Callable[[], Mapping[str, Any]]
-    listed: Callable[[N], bool] = lambda _: True
-
-    def of_store(self, store: Store) -> tuple[Stored[N], ...]:
-        """What is in the list."""
-        return tuple(one for one in store.list(self.kind) if self.listed(one.document))
+    gather: Callable[[], Any] = lambda: None
+    missing: Callable[[Any], str | None] = lambda _: None
+    also: tuple[str, Callable[[N], None]] | None = None
 
 
 def _home(document: object) -> str | None:
@@ -99,24 +103,37 @@ class Shelves(Generic[N]):
         self.hands.later(lambda: self._list(said))
 
     def _list(self, said: str) -> None:
-        found = self.shelf.of_store(self.store)
-        archived = tuple(one for one in self.store.archived(self.shelf.kind) if self.shelf.listed(one.document))
+        found, archived = self.store.list(self.shelf.kind), self.store.archived(self.shelf.kind)
         self.pages.turn(lambda gui: _ListPage(gui, self, found, len(archived), said))
 
     def open_new(self, values: Mapping[str, Any] | None = None) -> None:
         """An empty form, or one that begins with these values."""
-        initial = self.shelf.fresh() if values is None else values
-        self.pages.turn(lambda gui: _EditPage(gui, self, initial, None))
+
+        def work() -> None:
+            initial = self.shelf.fresh() if values is None else values
+            gathered = self.shelf.gather()
+            missing = self.shelf.missing(gathered)
+            if missing is None:
+                self.pages.turn(lambda gui: _EditPage(gui, self, (initial, gathered), None))
+            else:
+                self._list(missing)
+
+        self.hands.later(work)
 
     def open_stored(self, stored: Stored[N]) -> None:
         """The form of a stored document."""
-        self.pages.turn(lambda gui: _EditPage(gui, self, stored.document.model_dump(), stored))
+
+        def work() -> None:
+            gathered = self.shelf.gather()
+            self.pages.turn(lambda gui: _EditPage(gui, self, (stored.document.model_dump(), gathered), stored))
+
+        self.hands.later(work)
 
     def open_archive(self) -> None:
         """What was archived."""
 
         def work() -> None:
-            found = tuple(one for one in self.store.archived(self.shelf.kind) if self.shelf.listed(one.document))
+            found = self.store.archived(self.shelf.kind)
             self.pages.turn(lambda gui: _ArchivePage(gui, self, found))
 
         self.hands.later(work)
@@ -235,7 +252,7 @@ def _said(error: StoreError) -> str:
     return first if isinstance(first, str) else str(error)
 
 
-class _ListPage:
+class _ListPage(Still):
     def __init__(
         self, gui: viser.GuiApi, pages: Shelves[N], found: tuple[Stored[N], ...], archived: int, said: str
     ) -> None:
@@ -256,23 +273,22 @@ class _ListPage:
         if pages.back is not None:
             press(gui, words("Back"), pages.back)
 
-    def show(self, desk: Desk) -> None:
-        """A list stands still until it is opened again."""
-        del desk
-
 
 class _EditPage:
     """A form with what can be done with its document."""
 
     def __init__(
-        self, gui: viser.GuiApi, pages: Shelves[Any], initial: Mapping[str, Any], stored: Stored[Any] | None
+        self, gui: viser.GuiApi, pages: Shelves[Any], begin: tuple[Mapping[str, Any], Any], stored: Stored[Any] | None
     ) -> None:
         words, shelf = pages.hands.words, pages.shelf
         self._pages, self._stored = pages, stored
         self._sure = False
         self._leave = press(gui, words("Back"), self._back)
         gui.add_html(heading_html(shelf.words.new if stored is None else shelf.words.edit))
-        self._form = shelf.form(gui, initial, pages.hands.soon)
+        if stored is not None and shelf.also is not None:
+            label, also = shelf.also
+            press(gui, label, partial(also, stored.document), "green")
+        self._form = shelf.form(gui, begin[0], pages.hands.soon, begin[1])
         press(gui, words("Save"), lambda: pages.save(self._form, stored), "green")
         if stored is not None:
             copy = (words("Copy"), self._copy)
@@ -295,13 +311,16 @@ class _EditPage:
 
     def show(self, desk: Desk) -> None:
         """Brings the form up to what was touched."""
-        del desk
-        self._form.show()
+        self._form.show(desk)
         words = self._pages.hands.words
         self._leave.label = words("Leave without saving") if self._sure else words("Back")
 
+    def close(self) -> None:
+        """What the form has drawn on the map goes with it."""
+        self._form.close()
 
-class _ArchivePage:
+
+class _ArchivePage(Still):
     def __init__(self, gui: viser.GuiApi, pages: Shelves[N], found: tuple[Stored[N], ...]) -> None:
         words = pages.hands.words
         gui.add_html(heading_html(words("Archive")))
@@ -310,12 +329,8 @@ class _ArchivePage:
             press(gui, stored.document.name, partial(pages.unarchive, stored))
         press(gui, words("Back"), pages.open_list)
 
-    def show(self, desk: Desk) -> None:
-        """Nothing here changes by itself."""
-        del desk
 
-
-class _ConflictPage:
+class _ConflictPage(Still):
     """Both versions side by side, and the choice."""
 
     def __init__(self, gui: viser.GuiApi, pages: Shelves[N], mine: N, theirs: Stored[N] | None) -> None:
@@ -329,13 +344,8 @@ class _ConflictPage:
         gui.add_html(notice_html([said]))
         if theirs is not None:
             gui.add_html(differences_html(mine, theirs.document, words, units))
-        self._said = Shown(gui)
         press(gui, words("Keep mine"), lambda: pages.keep_mine(mine, theirs), "green")
         if theirs is not None:
             press(gui, words("Take the other"), lambda: pages.open_stored(theirs))
         else:
             press(gui, words("Leave it removed"), pages.open_list)
-
-    def show(self, desk: Desk) -> None:
-        """Nothing here changes by itself."""
-        del desk

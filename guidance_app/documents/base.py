@@ -47,7 +47,10 @@ def choice(
     help: str = "",  # noqa: A002 - the form's own word for it
     when: tuple[str, Any] | None = None,
 ) -> Any:
-    """A field whose values are those of ``labels``, which hold what a person reads for each."""
+    """A field whose values are those of ``labels``, which hold what a person reads for each.
+
+    ``when`` names another member, and the value or the list of values for which this one matters.
+    """
     extra: dict[str, Any] = {"labels": dict(labels)}
     if when is not None:
         extra["when"] = when

@@ -44,7 +44,7 @@ class EntryKind(enum.StrEnum):
 class Entry:
     """One member of a document. Bounds are inclusive, in the document's unit; texts are English, to be said by words.
 
-    ``choices`` are values with their labels. ``when`` names another member and the value that it must have.
+    ``choices`` are values with their labels. ``when`` names another member and the values of which it must have one.
     """
 
     member: str
@@ -57,17 +57,17 @@ class Entry:
     longest: int | None = None
     optional: bool = False
     choices: tuple[tuple[str, str], ...] = ()
-    when: tuple[str, Any] | None = None
+    when: tuple[str, tuple[str, ...]] | None = None
     picture: str | None = None
 
-    def applies(self, draft: Draft) -> bool:
-        """Whether it matters while the other entries are as they are."""
-        return self.when is None or str(draft.get(self.when[0])) == str(self.when[1])
 
+def entries_of(model: type[BaseModel], members: Sequence[str] | None = None) -> tuple[Entry, ...]:
+    """Every member that a form can show, in the model's order, or those named in ``members`` in that order.
 
-def entries_of(model: type[BaseModel], leave_out: Sequence[str] = ()) -> tuple[Entry, ...]:
-    """Every member that a form can show, in the model's order; members of other types are the caller's to show."""
-    found = (_entry(member, info) for member, info in model.model_fields.items() if member not in leave_out)
+    Members of other types are the caller's to show.
+    """
+    fields = model.model_fields
+    found = (_entry(member, fields[member]) for member in (fields if members is None else members))
     return tuple(entry for entry in found if entry is not None)
 
 
@@ -79,7 +79,6 @@ def _entry(member: str, info: FieldInfo) -> Entry | None:
     if kind is None or member in LEFT_OUT:
         return None
     bounds = {type(one): one for one in info.metadata}
-    when = extra.get("when")
     return Entry(
         member=member,
         kind=kind,
@@ -91,7 +90,7 @@ def _entry(member: str, info: FieldInfo) -> Entry | None:
         longest=getattr(bounds.get(MaxLen), "max_length", None),
         optional=optional,
         choices=choices,
-        when=(str(when[0]), when[1]) if isinstance(when, (tuple, list)) else None,
+        when=_when(extra.get("when")),
         picture=str(extra["picture"]) if "picture" in extra else None,
     )
 
@@ -120,6 +119,13 @@ def _choices(annotation: Any, extra: Mapping[str, Any]) -> tuple[tuple[str, str]
     else:
         return ()
     return tuple((value, str(labels.get(value, value))) for value in values)
+
+
+def _when(when: Any) -> tuple[str, tuple[str, ...]] | None:
+    if not isinstance(when, (tuple, list)):
+        return None
+    values = when[1] if isinstance(when[1], (tuple, list)) else [when[1]]
+    return str(when[0]), tuple(str(one) for one in values)
 
 
 def _bound(bound: object, name: str) -> float | None:
@@ -196,6 +202,13 @@ class FormView(Generic[M]):
         """What the inputs show at first."""
         return {entry.member: self._shown(entry) for entry in self.entries}
 
+    def applies(self, entry: Entry, draft: Draft) -> bool:
+        """Whether it matters while the other entries are as they are; not if what it depends on does not."""
+        if entry.when is None:
+            return True
+        on = next((other for other in self.entries if other.member == entry.when[0]), None)
+        return str(draft.get(entry.when[0])) in entry.when[1] and (on is None or self.applies(on, draft))
+
     def _shown(self, entry: Entry) -> Any:
         value = self.initial.get(entry.member)
         match entry.kind:
@@ -238,7 +251,7 @@ class FormView(Generic[M]):
         values: dict[str, Any] = dict(self.initial)
         wrong: dict[str, str] = {}
         for entry in self.entries:
-            if not entry.applies(draft):
+            if not self.applies(entry, draft):
                 continue
             try:
                 values[entry.member] = self.read(entry, draft[entry.member])

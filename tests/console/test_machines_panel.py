@@ -90,7 +90,7 @@ def test_only_a_trailed_implement_has_a_drawbar(place: SetupPlace) -> None:
     opened(place, "Implements", "Sample implement")
     place.until(lambda: place.newest("Hitch"))
     assert place.newest("Hitch to implement axle (m)") is None
-    place.fill("Hitch", "Trailed")
+    place.press("Trailed")
     place.until(lambda: place.newest("Hitch to implement axle (m)"))
     place.fill("Hitch to implement axle (m)", "5")
     place.press("Save")
@@ -202,8 +202,8 @@ def test_a_receiver_is_taken_from_the_list(place: SetupPlace) -> None:
     place.until(lambda: (one := place.newest("Source")) and one["value"] == "udp://:9999")
     place.fill("Filter", "Rounded positions (Gomez-Gil)")
     place.says("writes few decimals")
-    place.fill("Datum", "Tokyo")
-    place.fill("Coordinates", "Plane rectangular")
+    place.press("Tokyo")
+    place.press("Plane rectangular")
     place.press("Save")
     place.says("&#x27; is stored")
     stored = place.store.load(Receiver, "AgIO").document

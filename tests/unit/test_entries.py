@@ -111,10 +111,10 @@ def test_entries_that_do_not_apply_keep_their_value_and_are_not_checked() -> Non
     view = FormView(Implement, entries_of(Implement), Implement(name="a").model_dump(), ENGLISH, Units.METRIC)
     by_member = {entry.member: entry for entry in view.entries}
     draft = {**view.draft(), "drawbar": "nonsense"}
-    assert not by_member["drawbar"].applies(draft)
+    assert not view.applies(by_member["drawbar"], draft)
     assert view.checked(draft).document == Implement(name="a")
     trailed = {**draft, "hitch": "trailed"}
-    assert by_member["drawbar"].applies(trailed)
+    assert view.applies(by_member["drawbar"], trailed)
     assert set(view.checked(trailed).wrong) == {"drawbar"}
 
 

@@ -5,6 +5,7 @@ from guidance_app.console.panels.fields import Fields
 from guidance_app.console.panels.info import Info
 from guidance_app.console.panels.machines import Machines
 from guidance_app.console.panels.menu import Menu
+from guidance_app.console.panels.operations import Operations
 from guidance_app.console.panels.plan import Plan
 from guidance_app.console.panels.position import Position
 from guidance_app.console.panels.receiver import Receiver
@@ -37,9 +38,10 @@ PANELS: dict[str, type[Panel]] = {
 SETUP_PANELS: dict[str, type[Panel]] = {
     "start": Start,
     "fields": Fields,
+    "machines": Machines,
+    "operations": Operations,
     "plan": Plan,
     "receiver": Receiver,
-    "machines": Machines,
     "recordings": Recordings,
 }
 """While setting up, in the order of the tabs."""

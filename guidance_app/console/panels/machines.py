@@ -1,6 +1,6 @@
 """The machines panel: tractors, implements and receivers."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, ClassVar
 
@@ -8,7 +8,7 @@ import viser
 
 from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.forms import Form, heading_html
-from guidance_app.console.pages import Pages, press
+from guidance_app.console.pages import Pages, Still, press
 from guidance_app.console.receiver_form import ReceiverForm
 from guidance_app.console.shelf import Shelf, ShelfWords, Shelves
 from guidance_app.console.widgets import notice_html
@@ -42,13 +42,13 @@ class Machines:
     def _open(self) -> None:
         self._pages.turn(self._first)
 
-    def _first(self, gui: viser.GuiApi) -> "_Still":
+    def _first(self, gui: viser.GuiApi) -> Still:
         words = self._hands.words
         gui.add_html(heading_html(words("Machines")))
         press(gui, words("Tractors"), self._tractors.open_list)
         press(gui, words("Implements"), self._implements.open_list)
         press(gui, words("Receivers"), self._receivers.open_list)
-        return _Still()
+        return Still()
 
     def _tractor_shelf(self) -> Shelf[Tractor]:
         words = self._hands.words
@@ -97,13 +97,7 @@ class Machines:
         self._pages.show(desk)
 
 
-class _Still:
-    def show(self, desk: Desk) -> None:
-        """Nothing here changes by itself."""
-        del desk
-
-
-class _NoStore(_Still):
+class _NoStore(Still):
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
         gui.add_html(notice_html([hands.words("This console has no data folder: nothing can be stored.")]))
 
@@ -113,5 +107,7 @@ def _fresh(document: Tractor | Implement | Receiver) -> dict[str, Any]:
     return document.model_dump() | {"name": ""}
 
 
-def _plain_form(hands: Hands, kind: Any, gui: viser.GuiApi, initial: Mapping[str, Any], touched: Any) -> Form[Any]:
+def _plain_form(
+    hands: Hands, kind: Any, gui: viser.GuiApi, initial: Mapping[str, Any], touched: Callable[[], None], _: None
+) -> Form[Any]:
     return Form(gui, kind, initial, hands.words, hands.house.settings().units, touched=touched)

@@ -12,24 +12,19 @@ import viser
 
 from guidance_app.boundary import frame_of, polygon_in
 from guidance_app.console.desk import Desk, Hands
+from guidance_app.console.plan_strokes import draw_plan
 from guidance_app.console.plan_table import RowButtons, table_html
 from guidance_app.console.widgets import Shown, notice_html
 from guidance_app.documents import Job, Operation
 from guidance_app.guidance.planning import request_from_documents
 from guidance_app.guidance.preview import PreviewRow, preview
 from guidance_app.language import message
-from guidance_app.model import FloatArray, Segment
+from guidance_app.model import Segment
 from guidance_app.store import Stored, load_job
 from guidance_app.view.camera import ViewMode
-from guidance_app.view.colours import Rgb
 from guidance_app.view.plan_table import PlanRow, plan_rows
-from guidance_app.view.polyline import closed_ring
 
 __all__ = ["Plan"]
-
-WORKED: Rgb = (232, 89, 12)
-EMPTY: Rgb = (112, 72, 190)
-UNFIT: Rgb = (210, 20, 20)
 
 
 class Plan:
@@ -91,8 +86,7 @@ class Plan:
         self._stop = threading.Event()
         self._running = False
         self._rows, self._chosen, self._stored = (), None, None
-        for name in ("worked", "empty", "unfit"):
-            self._hands.sketch.remove(name)
+        draw_plan(self._hands.sketch, ())
 
     def _compare(self, stored: Stored[Operation], stop: threading.Event) -> None:
         """Plans row by row until all are there or somebody stops it."""
@@ -135,10 +129,7 @@ class Plan:
         self._hands.later(lambda: self._draw(segments))
 
     def _draw(self, segments: Sequence[Segment]) -> None:
-        sketch = self._hands.sketch
-        sketch.strokes("worked", [_line(each) for each in segments if each.implement_down], WORKED, 3.0)
-        sketch.strokes("empty", [_line(each) for each in segments if not each.implement_down and each.fits], EMPTY)
-        sketch.strokes("unfit", [_line(each) for each in segments if not each.fits], UNFIT, 4.0)
+        draw_plan(self._hands.sketch, segments)
 
     def _take_chosen(self) -> None:
         row = next((each for each in self._rows if each.number == self._chosen), None)
@@ -200,7 +191,3 @@ class Plan:
             ),
             words("Press a row to see it on the map, and once more to take it."),
         ]
-
-
-def _line(segment: Segment) -> FloatArray:
-    return closed_ring(segment.points) if segment.closed else segment.points
