@@ -178,7 +178,7 @@ class Form(Generic[M]):
         """What belongs to no entry; else where to look, because the entry itself may be out of sight."""
         words = self._view.words
         titles = [words(entry.title) for entry in self._view.entries if entry.member in self._wrong]
-        named = words("Nothing is stored yet. Look again at: {titles}.", titles=", ".join(titles)) if titles else ""
+        named = words("Look again at: {titles}.", titles=", ".join(titles)) if titles else ""
         return self._wrong.get("", "") or named
 
     def _length(self, metres: float) -> str:

@@ -16,10 +16,12 @@ from guidance_app.documents import FieldDocument, Job, Method, Operation, Receiv
 from guidance_app.exchange import ExchangeError
 from guidance_app.guidance.planning import PlanError
 from guidance_app.language import sentence
-from guidance_app.runtime import LiveSession, Session, SessionManager, recorded_session
+from guidance_app.runtime import LiveSession, Session, SessionManager, recorded_session, resumed_session
 from guidance_app.sources import SourceError, open_source
 from guidance_app.sources.ports import ListPorts, found_ports
 from guidance_app.store import Store, StoreError
+from guidance_app.store.recordings import job_of_recording
+from guidance_app.store.recordings_list import Resumable
 
 __all__ = ["SENTENCES", "House"]
 
@@ -42,6 +44,7 @@ class House:
         self.files = Files()
         self._workers = ThreadPoolExecutor(WORKERS, thread_name_prefix="house")
         self._changing = threading.Lock()
+        self._version = 0
         stored = None if store is None or self.driving else store.settings()
         if stored is not None:
             manager.show_as(stored.document)
@@ -72,6 +75,12 @@ class House:
             raise SourceError(sentence("The receiver's address is too long: write it shorter.")) from None
         self.drive(job.model_copy(update={"receiver": receiver}))
 
+    def resume(self, found: Resumable, progress: Callable[[float], None] | None = None) -> None:
+        """Goes on with a drive that was cut off, from its own receiver. Raises ``StoreError`` or ``SourceError``."""
+        receiver = job_of_recording(found.path).receiver
+        source = open_source(receiver.source, receiver.attitude_source)
+        self.take(resumed_session(found.path, source, progress))
+
     def take(self, session: Session) -> None:
         """Ends what is driven and goes on with this session."""
         with self._changing:
@@ -101,12 +110,29 @@ class House:
 
     # --- long work -------------------------------------------------------------------------------------------------
 
+    @property
+    def version(self) -> int:
+        """Another number after each work that a person has asked for: what is stored may have changed."""
+        return self._version
+
+    def aside(self, work: Callable[[], None]) -> None:
+        """Looks at something on another thread; what fails is logged."""
+
+        def run() -> None:
+            try:
+                work()
+            except Exception:
+                log.exception("a look at what is stored failed")
+
+        self._workers.submit(run)
+
     def later(self, work: Callable[[], None], failed: Callable[[str], None]) -> None:
         """Does ``work`` on another thread; ``failed`` hears the sentence when it cannot be done."""
 
         def run() -> None:
             try:
                 work()
+                self._version += 1
             except SENTENCES as error:
                 failed(str(error))
             except Exception as error:

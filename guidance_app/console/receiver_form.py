@@ -10,11 +10,11 @@ from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.forms import Form
 from guidance_app.console.widgets import Shown
 from guidance_app.documents import Receiver
-from guidance_app.language import message
+from guidance_app.language import Words, message
 from guidance_app.sources import SOURCES
-from guidance_app.sources.ports import found_ports
+from guidance_app.sources.ports import ListPorts
 
-__all__ = ["FILTER_WORDS", "ReceiverForm", "source_problem"]
+__all__ = ["FILTER_WORDS", "ReceiverForm", "source_problem", "sources_found"]
 
 FILTER_WORDS: Mapping[str, tuple[str, str]] = {
     "adaptive": (
@@ -47,6 +47,12 @@ def source_problem(source: str) -> str | None:
     if colon and scheme.lower() in SOURCES:
         return None
     return message("Write where positions come from with one of {known} in front.")
+
+
+def sources_found(words: Words, ports_now: ListPorts) -> dict[str, str]:
+    """Addresses by what a person reads: the ports that are there now, and what needs none. Asks the system."""
+    ports = {f"{port.path} {port.name}".strip(): f"serial://{port.path}" for port in ports_now()}
+    return ports | {words(label): uri for label, uri in ELSEWHERE}
 
 
 class ReceiverForm:
@@ -85,8 +91,7 @@ class ReceiverForm:
         """The ports that are there now, and what needs none."""
         words = self._words
         typed = words("as typed below")
-        self._found = {f"{port.path} {port.name}".strip(): f"serial://{port.path}" for port in found_ports()}
-        self._found |= {words(label): uri for label, uri in ELSEWHERE}
+        self._found = sources_found(words, self._hands.house.list_ports)
         self._plugged.options = (typed, *self._found)
         self._plugged.value = typed
 

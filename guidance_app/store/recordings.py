@@ -33,6 +33,7 @@ __all__ = [
     "RecordingFiles",
     "RecordingSummary",
     "is_recording",
+    "job_of_recording",
     "open_recording",
     "opened",
     "packed",
@@ -104,6 +105,18 @@ def is_recording(path: Path) -> bool:
             return SESSION in archive.namelist()
     except (OSError, zipfile.BadZipFile):
         return False
+
+
+def job_of_recording(folder: Path) -> Job:
+    """The documents that a recorded drive began with, without reading the drive. Raises ``StoreError``."""
+    try:
+        return _meta_of(read_bounded(folder / SESSION)).job
+    except OSError as error:
+        msg = f"{folder} cannot be read: {why(error)}"
+        raise StoreError(msg) from error
+    except RecordingError as error:
+        msg = f"{folder} cannot be read: {error}"
+        raise StoreError(msg) from error
 
 
 def open_recording(path: Path, progress: Callable[[float], None] | None = None) -> RecordedDrive:

@@ -28,13 +28,13 @@ def place(server: viser.ViserServer, tmp_path: Path) -> Iterator[SetupPlace]:
 
 def anew(place: SetupPlace, name: str) -> None:
     place.press("New operation")
-    place.until(lambda: place.newest("Show the plan on the map"))
+    place.until(lambda: place.newest("Save"))
     place.fill("Name", name)
 
 
 def opened(place: SetupPlace, name: str = "Round trip") -> None:
     place.press(f"{name} · Sample field")
-    place.until(lambda: place.newest("Show the plan on the map"))
+    place.until(lambda: place.newest("Copy"))
 
 
 def stored(place: SetupPlace, name: str) -> Operation:

@@ -58,8 +58,8 @@ def test_a_registered_operation_is_driven_by_its_name(server: viser.ViserServer,
     screen = Screen(server, house)
     screen.attach()
     with viser_client(server) as client:
-        tick_until(screen, client, lambda: client.control("Sample field: Round trip"))
-        client.press("Sample field: Round trip")
+        tick_until(screen, client, lambda: client.control("▶ Round trip"))
+        client.press("▶ Round trip")
         tick_until(screen, client, lambda: client.control("Skip") and "/w/field/boundary" in client.nodes)
         assert house.driving
 

@@ -1,68 +1,219 @@
-"""The start panel: a registered operation by its name, or drive now with nothing but a width."""
+"""The start panel: go on with a drive that was cut off, take a registered operation, or drive now with a width."""
 
+import datetime
+import html
+from collections.abc import Mapping
+from functools import partial
 from typing import ClassVar
 
 import viser
+from pydantic import BaseModel, ConfigDict, Field
 
+from guidance_app.console.beginnings import Beginnings, LastTime, OnField, beginnings_of
 from guidance_app.console.desk import Desk, Hands, Place
+from guidance_app.console.forms import Form, heading_html
+from guidance_app.console.pages import Pages, Still, press
+from guidance_app.console.receiver_form import sources_found
 from guidance_app.console.widgets import Shown, notice_html
-from guidance_app.documents import Implement, Job, Operation, Receiver, Tractor
-from guidance_app.language import message
+from guidance_app.documents import Implement, Job, Receiver, Tractor, quantity
+from guidance_app.language import Words, message
 from guidance_app.store import load_job
+from guidance_app.store.recordings_list import Resumable, finish_recording
 
-__all__ = ["Start"]
+__all__ = ["Start", "cut_off_words"]
+
+SIMULATED = "sim:"
+
+
+class _DriveNow(BaseModel):
+    """What a drive without a plan needs. Tractor and implement are names of registered ones, '' for none.
+
+    ``receiver`` is an address.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    implement: str = Field("", title="Implement")
+    working_width: float = quantity("Working width", "m", 0.3, 60, 3.0, when=("implement", ""))
+    tractor: str = Field("", title="Tractor")
+    receiver: str = Field(SIMULATED, title="Receiver")
+
+
+def cut_off_words(found: Resumable, words: Words) -> str:
+    """``pass 7 of 24, 14:32``: how far a drive was, and when it was last heard of."""
+    parts = [one for one in (found.field, found.operation) if one]
+    if found.pass_number is not None and found.passes_planned is not None:
+        parts.append(words("pass {number} of {count}", number=found.pass_number, count=found.passes_planned))
+    stopped = found.stopped_utc or found.started_utc
+    try:
+        moment = datetime.datetime.fromisoformat(stopped).astimezone()
+    except ValueError:
+        return ", ".join(parts)  # a summary that somebody has changed by hand: the rest still tells which drive it is
+    return ", ".join([*parts, words.moment(moment)])
 
 
 class Start:
-    """Begins a drive."""
+    """Begins a drive. What it offers follows what is stored."""
 
     title: ClassVar[str] = message("Start")
 
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
         self._hands = hands
-        words = hands.words
-        said = Shown(gui)
-        store = hands.house.store
-        operations = () if store is None else store.list(Operation)
-        for stored in operations:
-            self._offer(gui, stored.document)
-        if not operations:
-            nothing = words("No operation is registered yet: drive now, or set up field and machines.")
-            said.show(notice_html([nothing]))
-        with gui.add_folder(words("Drive now")):
-            self._width = gui.add_number(
-                words("{title} ({unit})", title=words("Working width"), unit="m"), 3.0, min=0.3, max=60.0, step=0.1
-            )
-            self._source = gui.add_text(words("Receiver"), hands.house.manager.job.receiver.source)
-            now = gui.add_button(words("Drive now"), color="green")
+        self._pages = Pages(gui, hands)
+        self._version = -1
+        self._shown: tuple[Beginnings | None, Mapping[str, str]] | None = None
+        self._gathering = False
 
-        @now.on_click
-        async def _(_: object) -> None:
-            hands.later(self._drive_now)
+    def show(self, desk: Desk) -> None:
+        """Looks again when something may have been stored."""
+        version = self._hands.house.version
+        if version != self._version and not self._gathering:
+            self._version, self._gathering = version, True
+            self._hands.house.aside(self._gather)
+        self._pages.show(desk)
 
-    def _offer(self, gui: viser.GuiApi, operation: Operation) -> None:
-        button = gui.add_button(f"{operation.field}: {operation.name}", color="green")
+    def _gather(self) -> None:
+        """On a thread of its own; the page is only made anew when there is something new."""
+        try:
+            store = self._hands.house.store
+            found = None if store is None else beginnings_of(store)
+            sources = sources_found(self._hands.words, self._hands.house.list_ports)
+        finally:
+            self._gathering = False
+        if (found, sources) != self._shown:
+            self._shown = (found, sources)
+            self._pages.turn(lambda gui: _Offers(gui, self._hands, found, sources))
 
-        @button.on_click
-        async def _(_: object) -> None:
-            self._hands.later(lambda: self._drive(operation))
 
-    def _drive(self, operation: Operation) -> None:
-        store = self._hands.house.store
-        assert store is not None
-        self._hands.house.drive(load_job(store, operation.name, operation.field))
+class _Offers(Still):
+    """The page itself."""
+
+    def __init__(self, gui: viser.GuiApi, hands: Hands, found: Beginnings | None, sources: Mapping[str, str]) -> None:
+        self._gui, self._hands, self._words = gui, hands, hands.words
+        self._found, self._sources = found, sources
+        if found is not None:
+            if found.cut_off is not None:
+                self._offer_to_go_on(found.cut_off)
+            for on_field in found.work:
+                self._offer_operations(on_field)
+            if not found.work:
+                gui.add_html(_steps_html(found, self._words))
+        self._offer_to_drive_now()
+
+    # --- going on --------------------------------------------------------------------------------------------------
+
+    def _offer_to_go_on(self, found: Resumable) -> None:
+        words = self._words
+        self._gui.add_html(heading_html(words("The last drive was cut off")))
+        label = words("Go on: {where}", where=cut_off_words(found, words))
+        press(self._gui, label, lambda: self._hands.later(partial(self._go_on, found)), "green")
+        self._said = Shown(self._gui)
+        press(self._gui, words("Leave it as it is"), lambda: self._hands.later(partial(self._leave, found)))
+
+    def _go_on(self, found: Resumable) -> None:
+        words = self._words
+
+        def tell(part: float) -> None:
+            percent = words.number(100 * part)
+            self._said.show(notice_html([words("Taking the drive again: {percent} %", percent=percent)]))
+
+        self._hands.house.resume(found, tell)
         self._hands.go(Place.DRIVE)
 
-    def _drive_now(self) -> None:
-        job = Job(
-            tractor=Tractor(name="Tractor"),
-            implement=Implement(name="Implement", working_width=float(self._width.value)),
-            receiver=Receiver(name="Receiver", source=self._source.value),
-            settings=self._hands.house.settings(),
+    def _leave(self, found: Resumable) -> None:
+        finish_recording(found.path)
+        self._hands.tell(self._words("The drive is ended; its recording stays."))
+
+    # --- registered operations -------------------------------------------------------------------------------------
+
+    def _offer_operations(self, on_field: OnField) -> None:
+        self._gui.add_html(f'<div class="g-sub">{html.escape(on_field.field)}</div>')
+        for name in on_field.operations:
+            press(
+                self._gui, f"▶ {name}", partial(self._hands.later, partial(self._drive, name, on_field.field)), "green"
+            )
+
+    def _drive(self, operation: str, field: str) -> None:
+        store = self._hands.house.store
+        assert store is not None, "an operation comes from a store"
+        self._hands.house.drive(load_job(store, operation, field))
+        self._hands.go(Place.DRIVE)
+
+    # --- now -------------------------------------------------------------------------------------------------------
+
+    def _offer_to_drive_now(self) -> None:
+        words, found = self._words, self._found
+        last = LastTime() if found is None else found.last
+        self._gui.add_html(f'<div class="g-sub">{html.escape(words("Drive now, without a plan"))}</div>')
+        tractors = () if found is None else found.tractors
+        implements = () if found is None else found.implements
+        registered = () if found is None else found.receivers
+        receivers = [(f"receiver {name}", name) for name, _ in registered]
+        receivers += [(uri, label) for label, uri in self._sources.items()]
+        initial = {
+            "implement": last.implement if last.implement in implements else "",
+            "working_width": last.width,
+            "tractor": last.tractor if last.tractor in tractors else "",
+            "receiver": _receiver_of(last, registered, receivers),
+        }
+        self._form = Form(
+            self._gui,
+            _DriveNow,
+            initial,
+            words,
+            self._hands.house.settings().units,
+            options={
+                "implement": [("", message("Only a width")), *((one, one) for one in implements)],
+                "tractor": [("", message("Any tractor")), *((one, one) for one in tractors)],
+                "receiver": receivers,
+            },
+            touched=self._hands.soon,
         )
-        self._hands.house.drive(job)
+        press(self._gui, words("Drive now"), lambda: self._hands.later(self._drive_now), "green")
+
+    def _drive_now(self) -> None:
+        wanted = self._form.read()
+        if wanted is None:
+            return
+        store = self._hands.house.store
+        words = self._words
+        tractor = Tractor(name=words("Tractor"))
+        implement = Implement(name=words("Implement"), working_width=wanted.working_width)
+        receiver = Receiver(name=words("Receiver"), source=wanted.receiver)
+        if store is not None:
+            if wanted.tractor:
+                tractor = store.load(Tractor, wanted.tractor).document
+            if wanted.implement:
+                implement = store.load(Implement, wanted.implement).document
+            if wanted.receiver.startswith("receiver "):
+                receiver = store.load(Receiver, wanted.receiver.removeprefix("receiver ")).document
+        settings = self._hands.house.settings()
+        self._hands.house.drive(Job(tractor=tractor, implement=implement, receiver=receiver, settings=settings))
         self._hands.go(Place.DRIVE)
 
     def show(self, desk: Desk) -> None:
-        """Nothing here changes by itself."""
-        del desk
+        """Brings the form up to what was touched."""
+        self._form.show(desk)
+
+
+def _receiver_of(last: LastTime, registered: tuple[tuple[str, str], ...], offered: list[tuple[str, str]]) -> str:
+    """The receiver of the last time, else the first registered one, else the first that is found."""
+    keys = [key for key, _ in offered]
+    for key in (f"receiver {last.receiver}", last.source):
+        if key in keys:
+            return key
+    return f"receiver {registered[0][0]}" if registered else keys[0]
+
+
+def _steps_html(found: Beginnings, words: Words) -> str:
+    """What is still missing for a planned drive, in the order in which it is done."""
+    steps = (
+        (bool(found.tractors), words("Register a tractor, under Machines")),
+        (bool(found.implements), words("Register an implement, under Machines")),
+        (bool(found.receivers), words("Register a receiver, under Machines")),
+        (found.fields > 0, words("Register a field, under Fields")),
+        (bool(found.work), words("Register an operation, under Jobs")),
+    )
+    lines = "".join(f"<div>{'☑' if done else '☐'} {html.escape(text)}</div>" for done, text in steps)
+    said = html.escape(words("To drive by a plan:"))
+    return f'<div class="g-said g-steps"><b>{said}</b>{lines}</div>'
