@@ -5,7 +5,7 @@ viser's callbacks run on its own loop and long work on a thread of its own; both
 
 import threading
 from collections.abc import Callable
-from typing import Literal, Protocol
+from typing import Literal, Protocol, runtime_checkable
 
 import viser
 
@@ -21,20 +21,22 @@ class Page(Protocol):
         """Brings its words and widgets up to what is."""
         ...
 
+
+@runtime_checkable
+class _Leaving(Protocol):
+    """A page that leaves something outside of its tab."""
+
     def close(self) -> None:
-        """Another page follows: takes away what it has left outside of the tab."""
+        """Another page follows: takes away what was left."""
         ...
 
 
 class Still:
-    """A page on which nothing changes by itself, and that leaves nothing behind."""
+    """A page on which nothing changes by itself."""
 
     def show(self, desk: Desk) -> None:
         """It stands still."""
         del desk
-
-    def close(self) -> None:
-        """It has left nothing."""
 
 
 Color = Literal["gray", "green", "red", "orange"]
@@ -69,7 +71,7 @@ class Pages:
             self._page.show(desk)
 
     def _open(self, make: MakePage) -> None:
-        if self._page is not None:
+        if isinstance(self._page, _Leaving):
             self._page.close()
         if self._inner is not None:
             self._inner.remove()
