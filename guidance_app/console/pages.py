@@ -5,7 +5,7 @@ viser's callbacks run on its own loop and long work on a thread of its own; both
 
 import threading
 from collections.abc import Callable
-from typing import Literal, Protocol, runtime_checkable
+from typing import Literal, Protocol
 
 import viser
 
@@ -15,19 +15,10 @@ __all__ = ["Page", "Pages", "Still", "press"]
 
 
 class Page(Protocol):
-    """What a tab holds for a while. It is made inside the tab."""
+    """What a tab holds for a while. It is made inside the tab. One that leaves something outside has a ``close``."""
 
     def show(self, desk: Desk) -> None:
         """Brings its words and widgets up to what is."""
-        ...
-
-
-@runtime_checkable
-class _Leaving(Protocol):
-    """A page that leaves something outside of its tab."""
-
-    def close(self) -> None:
-        """Another page follows: takes away what was left."""
         ...
 
 
@@ -71,8 +62,9 @@ class Pages:
             self._page.show(desk)
 
     def _open(self, make: MakePage) -> None:
-        if isinstance(self._page, _Leaving):
-            self._page.close()
+        leave = getattr(self._page, "close", None)
+        if leave is not None:
+            leave()
         if self._inner is not None:
             self._inner.remove()
         with self._outer:

@@ -143,13 +143,15 @@ class _Offers(Still):
 
     def _offer_to_drive_now(self) -> None:
         words, found = self._words, self._found
-        last = LastTime() if found is None else found.last
+        current = self._hands.house.manager.job.receiver.source
+        last = LastTime(source=current) if found is None or not found.last.source else found.last
         self._gui.add_html(f'<div class="g-sub">{html.escape(words("Drive now, without a plan"))}</div>')
         tractors = () if found is None else found.tractors
         implements = () if found is None else found.implements
         registered = () if found is None else found.receivers
         receivers = [(f"receiver {name}", name) for name, _ in registered]
         receivers += [(uri, label) for label, uri in self._sources.items()]
+        receivers += [(uri, uri) for uri in dict.fromkeys((last.source, current)) if uri not in dict(receivers)]
         initial = {
             "implement": last.implement if last.implement in implements else "",
             "working_width": last.width,
@@ -197,12 +199,16 @@ class _Offers(Still):
 
 
 def _receiver_of(last: LastTime, registered: tuple[tuple[str, str], ...], offered: list[tuple[str, str]]) -> str:
-    """The receiver of the last time, else the first registered one, else the first that is found."""
+    """The receiver of the last time, by its name or its address; before any, a registered or a plugged one."""
     keys = [key for key, _ in offered]
-    for key in (f"receiver {last.receiver}", last.source):
-        if key in keys:
-            return key
-    return f"receiver {registered[0][0]}" if registered else keys[0]
+    named = f"receiver {last.receiver}"
+    if named in keys:
+        return named
+    if last != LastTime(source=SIMULATED):
+        return last.source
+    if registered:
+        return f"receiver {registered[0][0]}"
+    return next((key for key in keys if key.startswith("serial:")), SIMULATED)
 
 
 def _steps_html(found: Beginnings, words: Words) -> str:
