@@ -24,12 +24,13 @@ class Bundle:
     """Passes from one side to the other; each as the line (2, 2) worked along the bundle's heading, and against it.
 
     ``rows`` are the first and the last strip of the mainland, None beside it. ``numbers`` are the passes' numbers where
-    they have them already.
+    they have them already. Those of a ``spare`` bundle may be left out of a plan.
     """
 
     lines: tuple[BothWays, ...]
     rows: tuple[int, int] | None = None
     numbers: tuple[int, ...] | None = None
+    spare: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,7 +61,9 @@ class Run:
 
     def tasks(self, done: int) -> list[Task]:
         """The passes, numbered from ``done`` + 1 across the bundle from the side at which it is entered."""
-        return [Task.along(line, number) for line, number in zip(self.lines, self._numbers(done), strict=True)]
+        spare = self.bundle.spare
+        numbered = zip(self.lines, self._numbers(done), strict=True)
+        return [Task.along(line, number, spare=spare) for line, number in numbered]
 
     def _numbers(self, done: int) -> list[int]:
         known = self.bundle.numbers

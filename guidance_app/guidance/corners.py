@@ -30,6 +30,9 @@ LIFT = 1.0
 RUN_OUT = 1.5
 """Metres after a corner within which its next side is looked for; a bent one is then followed from there."""
 
+SHORTEST_BACK = 1.0
+"""Metres; nobody stops to back up by less."""
+
 STEP = 0.25
 """Metres between the places where a side may begin."""
 
@@ -71,10 +74,10 @@ class CornerFinder:
         last = _straight_from(ring, int(passed))
         if last is None:
             return None
-        here, ahead = ring.points[last], ring.at(ring.along[last : last + 1] + LONG)[0]
+        here, ahead = ring.points[last], ring.points[(last + 1) % len(ring.points)]
         direction = (ahead - here) / np.hypot(*(ahead - here))
         metres = self._back(here, direction, float(np.hypot(*(tips[deepest] - here))))
-        if metres is None:
+        if metres is None or metres < SHORTEST_BACK:
             return None
         arc = slice(first, last + 1)
         lift = self._lift(ring.along[arc], ring.points[arc] - here, direction)

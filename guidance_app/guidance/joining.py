@@ -51,11 +51,13 @@ class Joiner:
     def __init__(self, turner: Turner, ways: Ways, request: PlanRequest) -> None:
         self._turner = turner
         self._ways = ways
+        self._known: dict[bytes, Turn] = {}
+        self._begun: dict[tuple[Lap, bytes], tuple[float, Turn]] = {}
         self._lap_turner = turner.within(Room(turner.room.polygon, request.body, TOUCH + _swing(request)))
 
     def segments(self, tasks: Sequence[Task], start: FloatArray | None = None) -> Iterator[Segment]:
         """The whole of it in driving order; from the pose ``start`` (3,) if there is one."""
-        turns = self._turns(tasks)
+        turns = self.turns(tasks)
         if start is not None and math.dist(start[:2], tasks[0].first[:2]) > ARRIVED:
             yield from _joining(replace(self._ways.way(start, tasks[0].first), transfer=True), tasks[0].number)
         for place, task in enumerate(tasks):
@@ -87,21 +89,39 @@ class Joiner:
         order = np.argsort(np.hypot(*(poses[:, :2] - last[:2]).T))[:LAP_PLACES]
         if len(last) == PLACE:
             return side_tasks(lap, float(along[order[0]]), number, None)
-        for turner in (self._turner, self._lap_turner):
-            found = turner.nearest(last, poses[order])
-            if found is not None:
-                return side_tasks(lap, float(along[order[found[0]]]), number, found[1])
-        ways = {int(place): self._ways.way(last, poses[place]) for place in order[:: max(1, len(order) // LAP_WAYS)]}
-        begin = min(ways, key=lambda place: (not ways[place].fits, ways[place].length))
-        return side_tasks(lap, float(along[begin]), number, ways[begin])
+        key = (lap, last.tobytes())
+        if key not in self._begun:
+            place, way = self._way_onto(poses[order], last)
+            self._begun[key] = float(along[order[place]]), way
+        begin, way = self._begun[key]
+        return side_tasks(lap, begin, number, way)
 
-    def _turns(self, tasks: Sequence[Task]) -> list[Turn]:
+    def _way_onto(self, poses: FloatArray, last: FloatArray) -> tuple[int, Turn]:
+        """Which of the poses (M, 3), the nearest first, is reached soonest, and how."""
+        for turner in (self._turner, self._lap_turner):
+            found = turner.nearest(last, poses)
+            if found is not None:
+                return found
+        ways = {place: self._ways.way(last, poses[place]) for place in range(0, len(poses), -(-len(poses) // LAP_WAYS))}
+        return min(ways.items(), key=lambda each: (not each[1].fits, each[1].length))
+
+    def turns(self, tasks: Sequence[Task]) -> list[Turn]:
+        """The ways from each task to the next; what was found once is known."""
         pairs = list(itertools.pairwise(tasks))
-        known: list[Turn | None] = [after.approach for _, after in pairs]
+        keys = [before.last.tobytes() + after.first.tobytes() for before, after in pairs]
+        new = [
+            place for place, (_, after) in enumerate(pairs) if after.approach is None and keys[place] not in self._known
+        ]
+        for place, turn in zip(new, self._found([pairs[place] for place in new]), strict=True):
+            self._known[keys[place]] = turn
+        return [after.approach or self._known[key] for key, (_, after) in zip(keys, pairs, strict=True)]
+
+    def _found(self, pairs: Sequence[tuple[Task, Task]]) -> list[Turn]:
+        known: list[Turn | None] = [None] * len(pairs)
         near = [
             place
             for place, (before, after) in enumerate(pairs)
-            if known[place] is None and np.hypot(*(after.first - before.last)[:2]) < FAR * self._turner.radius
+            if np.hypot(*(after.first - before.last)[:2]) < FAR * self._turner.radius
         ]
         if near:
             starts = np.array([pairs[place][0].last for place in near])

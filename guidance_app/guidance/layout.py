@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
@@ -17,6 +17,7 @@ from guidance_app.guidance.request import PlanRequest
 from guidance_app.guidance.room import Room
 from guidance_app.guidance.swaths import swath, united
 from guidance_app.guidance.task import Task, pass_line, side_tasks
+from guidance_app.model import FloatArray
 
 __all__ = ["Layout", "layout_of"]
 
@@ -28,6 +29,7 @@ ROUNDS = 3
 class Layout:
     """All that is worked. ``worked`` is the union of the swaths, ``swaths_area`` the sum of their areas."""
 
+    width: float
     ground: Polygon
     headland: Headland
     heading: float
@@ -36,6 +38,14 @@ class Layout:
     worked: BaseGeometry
     swaths_area: float
 
+    def without(self, lines: Sequence[FloatArray]) -> "Layout":
+        """The same with these lines (2, 2) of its bundles left out, whichever way they are driven."""
+        gone = {id(line) for line in lines}
+        kept = (_kept(bundle, gone) for bundle in self.bundles)
+        bundles = tuple(bundle for bundle in kept if bundle.lines)
+        swaths = _lap_swaths(self.headland, self.width) + _swaths(bundles, self.width)
+        return replace(self, bundles=bundles, worked=united(swaths), swaths_area=sum(each.area for each in swaths))
+
 
 def layout_of(ground: Polygon, room: Room, request: PlanRequest) -> Layout:
     """Headland, passes over the mainland, and passes for what both leave."""
@@ -43,8 +53,7 @@ def layout_of(ground: Polygon, room: Room, request: PlanRequest) -> Layout:
     heading = pass_heading(ground, headland.mainland, request)
     mainland = headland.mainland if headland.laps else ()
     bundles, spacing = _bundles(mainland, heading, request)
-    sides = [task for lap in headland.laps for task in side_tasks(lap, 0.0, 0, None)]
-    swaths = [swath(task, request.width) for task in sides] + _swaths(bundles, request.width)
+    swaths = _lap_swaths(headland, request.width) + _swaths(bundles, request.width)
     worked = united(swaths)
     area = sum(each.area for each in swaths)
     for attempt in range(ROUNDS if request.leftovers else 0):
@@ -56,7 +65,7 @@ def layout_of(ground: Polygon, room: Room, request: PlanRequest) -> Layout:
         swaths = _swaths(more, request.width)
         area += sum(each.area for each in swaths)
         worked = united([worked, *swaths])
-    return Layout(ground, headland, heading, spacing, tuple(bundles), worked, area)
+    return Layout(request.width, ground, headland, heading, spacing, tuple(bundles), worked, area)
 
 
 def _bundles(mainland: tuple[Polygon, ...], heading: float, request: PlanRequest) -> tuple[list[Bundle], float]:
@@ -71,6 +80,15 @@ def _bundles(mainland: tuple[Polygon, ...], heading: float, request: PlanRequest
 def _bundle(cell: Sequence[Piece], strips: Strips) -> Bundle:
     lines = [pass_line(piece, strips) for piece in cell]
     return Bundle(tuple((line, line[::-1]) for line in lines), rows=(cell[0].row, cell[-1].row))
+
+
+def _kept(bundle: Bundle, gone: set[int]) -> Bundle:
+    lines = tuple(both for both in bundle.lines if not gone & {id(both[0]), id(both[1])})
+    return bundle if len(lines) == len(bundle.lines) else replace(bundle, lines=lines)
+
+
+def _lap_swaths(headland: Headland, width: float) -> list[BaseGeometry]:
+    return [swath(task, width) for lap in headland.laps for task in side_tasks(lap, 0.0, 0, None)]
 
 
 def _swaths(bundles: Sequence[Bundle], width: float) -> list[BaseGeometry]:

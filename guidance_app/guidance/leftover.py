@@ -68,7 +68,7 @@ def _strips(part: Polygon, room: Room, request: PlanRequest, heading: float | No
             line = _both_ways(middle, reach, axes, room, request)
             if line is not None:
                 lines.append(line)
-    return Bundle(tuple(lines))
+    return Bundle(tuple(lines), spare=True)
 
 
 def _reaches(turned: Polygon, middle: float, width: float) -> list[tuple[float, float]]:

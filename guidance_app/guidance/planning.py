@@ -1,5 +1,7 @@
 """A whole field's plan: headland laps, passes in driving order, and what joins them."""
 
+import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -19,6 +21,7 @@ from guidance_app.guidance.request import PlanError, PlanRequest, request_from_d
 from guidance_app.guidance.room import Room
 from guidance_app.guidance.route import route
 from guidance_app.guidance.task import Task
+from guidance_app.guidance.turn import Turn
 from guidance_app.guidance.turns import Turner
 from guidance_app.guidance.ways import Ways
 from guidance_app.language import sentence
@@ -33,6 +36,15 @@ __all__ = [
     "plan_operation",
     "request_from_documents",
 ]
+
+ROUNDS = 4
+"""Times that small passes are left out because there is no way to them."""
+
+SMALL_WIDTHS, SMALL_PART = 2.0, 0.01
+"""A pass is small when it is shorter than so many working widths, or would work less than this part of the field."""
+
+HOPELESS = 1.0
+"""Metres; a turn that lacks less may be worth the driver's own judgement."""
 
 UNWORKED = 0.02
 """Part of the field that may stay unworked without a warning."""
@@ -65,7 +77,12 @@ def plan_on(groundwork: Groundwork, request: PlanRequest) -> Plan:
     """The plan on ground that was laid out for this request but for method, options, corner and order."""
     layout, joiner = groundwork.layout, groundwork.joiner
     method, options = _method(request)
-    tasks = _tasks(layout, joiner, (method, options), request)
+    for _ in range(ROUNDS):
+        tasks = _tasks(layout, joiner, (method, options), request)
+        gone = _not_worth_it(tasks, joiner.turns(tasks), layout)
+        if not gone:
+            break
+        layout = layout.without(gone)
     if not tasks:
         msg = sentence(
             "a working width of {width:g} m is too wide for this field of {area:.2f} ha",
@@ -113,6 +130,23 @@ def _tasks(
         return first + _passes(choices, request, last)
     passes = _passes(choices, request, request.start)
     return passes + joiner.round_tasks(laps, passes[-1].last if passes else np.array(start), count + 1, inward=False)
+
+
+def _not_worth_it(tasks: Sequence[Task], turns: Sequence[Turn], layout: Layout) -> list[FloatArray]:
+    """The lines of small spare passes that cannot be reached or left: they stay unworked, and nobody is sent there."""
+    gone = []
+    for (before, after), turn in zip(itertools.pairwise(tasks), turns, strict=True):
+        if turn.missing < HOPELESS:
+            continue
+        small = [task for task in (before, after) if task.spare and _small(task, layout)]
+        if small:
+            gone.append(min(small, key=lambda task: math.dist(*task.points)).points)
+    return gone
+
+
+def _small(task: Task, layout: Layout) -> bool:
+    length = math.dist(*task.points)
+    return length < SMALL_WIDTHS * layout.width or length * layout.width < SMALL_PART * layout.ground.area
 
 
 def _corner_of(ground: Polygon) -> tuple[float, float]:

@@ -15,18 +15,22 @@ __all__ = ["Task", "pass_line", "pose_at", "side_tasks"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Task:
-    """``points`` (N, 2) in driving order; ``approach`` is the turn that leads to it where that is already known."""
+    """``points`` (N, 2) in driving order; ``approach`` is the turn that leads to it where that is already known.
+
+    A ``spare`` one is left out of a plan when it cannot be reached and is not worth much.
+    """
 
     kind: SegmentKind
     number: int
     points: FloatArray
     closed: bool = False
     approach: Turn | None = None
+    spare: bool = False
 
     @classmethod
-    def along(cls, line: FloatArray, number: int = 0) -> "Task":
+    def along(cls, line: FloatArray, number: int = 0, *, spare: bool = False) -> "Task":
         """A pass along a line (2, 2)."""
-        return cls(SegmentKind.PASS, number, line)
+        return cls(SegmentKind.PASS, number, line, spare=spare)
 
     @property
     def first(self) -> FloatArray:
