@@ -6,7 +6,7 @@ lets it fade, because a driver steers back: constant curvature overshoots by hal
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
@@ -55,14 +55,22 @@ def _along(pose: Pose, seconds: float) -> tuple[Pose, FloatArray]:
 
 
 def _at(pose: Pose, after: float, east: float, north: float, heading: float, curvature: float) -> Pose:
-    return replace(
-        pose,
+    return Pose(
         t=pose.t + after,
         arrival=pose.arrival + after,
         east=east,
         north=north,
         heading=wrap_2pi(heading),
+        speed=pose.speed,
         curvature=curvature,
+        covariance=pose.covariance,
+        heading_sigma=pose.heading_sigma,
+        heading_known=pose.heading_known,
+        standing=pose.standing,
+        reverse=pose.reverse,
+        dead_reckoned=pose.dead_reckoned,
+        roll=pose.roll,
+        pitch=pose.pitch,
     )
 
 

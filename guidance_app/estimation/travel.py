@@ -7,7 +7,7 @@ Places are medians of three fixes, so that one outlier is neither a baseline nor
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from guidance_app.angles import heading_between, wrap_2pi, wrap_pi
 
@@ -39,10 +39,10 @@ class Travel:
         three = (*self.fixes, (east, north))
         fixes = three[-2:]
         if len(three) < 3:
-            return replace(self, fixes=fixes, heading=self.heading if compass is None else compass)
+            return self._with(fixes, compass)
         here = (sorted(e for e, _ in three)[1], sorted(n for _, n in three)[1])
         if self.points and math.dist(self.points[-1], here) < SPACING:
-            return replace(self, fixes=fixes, heading=self.heading if compass is None else compass)
+            return self._with(fixes, compass)
         step = math.dist(self.points[-1], here) if self.points else 0.0
         backed = self.backed + step if self.reverse else 0.0
         far = next(
@@ -55,6 +55,11 @@ class Travel:
         course = heading_between(self.points[far], here)
         heading, reverse, backed = self._turned(course, compass, backed)
         return Travel(kept, heading, reverse, backed, fixes)
+
+    def _with(self, fixes: tuple[tuple[float, float], ...], compass: float | None) -> "Travel":
+        """The same way with newer fixes."""
+        heading = self.heading if compass is None else compass
+        return Travel(self.points, heading, self.reverse, self.backed, fixes)
 
     def _turned(self, course: float, compass: float | None, backed: float) -> tuple[float, bool, float]:
         """Heading, reverse and metres backed with a new baseline's direction."""

@@ -174,8 +174,7 @@ class GyroFilter:
         if standing:
             x, p = _stopped(x, p, speed)
         rate = _yaw_rate(before, z, heading)
-        pose = _pose(z, x, p, heading, speed, rate)
-        pose = replace(pose, standing=standing, dead_reckoned=rejected > 0)
+        pose = _pose(z, (x, p), (heading, speed, rate), standing=standing, dead_reckoned=rejected > 0)
         if settings.as_printed and abs(rate) > FAST_TURN:
             pose = _raw(pose, z)
         return _State(z, travel, still, speed, heading, x, p, rejected, pose)
@@ -329,7 +328,17 @@ def _corrected(
     return *corrected(x, p, H, R, innovation), 0
 
 
-def _pose(z: Measurement, x: FloatArray, p: FloatArray, heading: float, speed: float, rate: float) -> Pose:
+def _pose(
+    z: Measurement,
+    estimate: tuple[FloatArray, FloatArray],
+    inputs: tuple[float, float, float],
+    *,
+    standing: bool,
+    dead_reckoned: bool,
+) -> Pose:
+    """From state and covariance, and the inputs heading, speed and yaw rate."""
+    x, p = estimate
+    heading, speed, rate = inputs
     forward = speed + float(x[SPEED_ERROR])
     drift = noise_of(z).drift ** 2
     return Pose(
@@ -342,7 +351,9 @@ def _pose(z: Measurement, x: FloatArray, p: FloatArray, heading: float, speed: f
         curvature=rate / forward if abs(forward) > 0.3 else 0.0,
         covariance=(float(p[0, 0]) + drift, float(p[0, 1]), float(p[1, 1]) + drift),
         heading_sigma=math.sqrt(float(p[HEADING_ERROR, HEADING_ERROR])),
+        standing=standing,
         reverse=forward < -STANDING,
+        dead_reckoned=dead_reckoned,
         roll=z.roll,
         pitch=z.pitch,
     )
