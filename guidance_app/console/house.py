@@ -16,6 +16,7 @@ from guidance_app.documents import FieldDocument, Job, Method, Operation, Receiv
 from guidance_app.exchange import ExchangeError
 from guidance_app.guidance.planning import PlanError
 from guidance_app.language import sentence
+from guidance_app.model import EndDrive, SessionState, Snapshot
 from guidance_app.runtime import LiveSession, Session, SessionManager, recorded_session, resumed_session
 from guidance_app.sources import SourceError, open_source
 from guidance_app.sources.ports import ListPorts, found_ports
@@ -30,6 +31,8 @@ log = logging.getLogger(__name__)
 SENTENCES: tuple[type[Exception], ...] = (StoreError, SourceError, ExchangeError, BoundaryError, PlanError)
 """Errors whose message is a sentence for the person at the screen."""
 WORKERS = 4
+ENDS_S = 1.0
+"""So long the engine may take to hear of the end; then the drive is ended without its word."""
 
 
 class House:
@@ -90,7 +93,23 @@ class House:
         """Ends what is driven; the field stays on the screen."""
         with self._changing:
             if not self.manager.idle:
+                self._tell_the_end()
                 self.manager.rest(_shown_only(self.manager.job, self.manager.job.field))
+
+    def _tell_the_end(self) -> None:
+        """The end is a command as any other, so that the recording of a drive holds it."""
+        if self.manager.replay is not None:
+            return
+        ended = threading.Event()
+
+        def hear(snapshot: Snapshot) -> None:
+            if snapshot.state is SessionState.ENDED:
+                ended.set()
+
+        stop_hearing = self.manager.subscribe(hear)
+        self.manager.post(EndDrive())
+        ended.wait(ENDS_S)
+        stop_hearing()
 
     def show_field(self, field: FieldDocument | None) -> bool:
         """Shows a field on the map, None for none; False while something is driven, which goes before."""

@@ -12,8 +12,9 @@ from support.viser_client import ViserClient, viser_client
 
 from guidance_app.console.house import House
 from guidance_app.console.screen import Screen
+from guidance_app.model import EndDrive, SessionState
 from guidance_app.runtime import SessionManager
-from guidance_app.store import Store, copy_sample
+from guidance_app.store import Store, copy_sample, load_job
 
 MOST_REDRAWS = 400
 SOON_S = 0.05
@@ -65,7 +66,8 @@ def test_a_registered_operation_is_driven_by_its_name(server: viser.ViserServer,
 
 
 def test_the_end_of_a_drive_asks_once(server: viser.ViserServer) -> None:
-    house = House(SessionManager(SetSession(field_snapshot())))
+    session = SetSession(field_snapshot())
+    house = House(SessionManager(session))
     screen = Screen(server, house)
     screen.attach()
     with viser_client(server) as client:
@@ -76,8 +78,18 @@ def test_the_end_of_a_drive_asks_once(server: viser.ViserServer) -> None:
         client.press("Yes, end the drive now")
         tick_until(screen, client, lambda: client.control("Drive now"))
         assert not house.driving
+    assert session.commands == [EndDrive()]
     house.manager.close()
     house.close()
+
+
+def test_a_drive_that_is_ended_has_heard_of_it(house: House) -> None:
+    states: list[SessionState] = []
+    house.drive(load_job(house.store, "Round trip"))
+    house.manager.subscribe(lambda snapshot: states.append(snapshot.state))
+    house.end()
+    assert SessionState.ENDED in states
+    assert not house.driving
 
 
 def test_a_new_drive_takes_the_old_ground_away(server: viser.ViserServer) -> None:
