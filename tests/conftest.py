@@ -1,6 +1,7 @@
 """What all tests share: where the real logs are, and what a skip means on the machine that must not skip."""
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -26,3 +27,11 @@ def real_data() -> Path:
     if not REAL_DATA.is_dir():
         missing(f"the real logs are not beside the project ({REAL_DATA})")
     return REAL_DATA
+
+
+@pytest.fixture(scope="session", autouse=True)
+def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """What tests keep is not kept in the user's cache."""
+    os.environ["GUIDANCE_CACHE"] = str(tmp_path_factory.mktemp("cache"))
+    yield
+    del os.environ["GUIDANCE_CACHE"]

@@ -48,6 +48,7 @@ class Ground:
         self._prepare()
         self.worked = Ribbon(self._scene, f"{WORLD}/worked", lit_source(palette.worked, palette.light))
         self.track = TrackLine(self._scene, f"{WORLD}/track", flat_source(palette.track))
+        self.ghost = TrackLine(self._scene, f"{WORLD}/ghost", flat_source(palette.ghost))
 
     def _prepare(self) -> None:
         """Light, surroundings and the world's frame."""
@@ -80,6 +81,7 @@ class Ground:
         self._light()
         self.worked.recolour(lit_source(palette.worked, palette.light))
         self.track.recolour(flat_source(palette.track))
+        self.ghost.recolour(flat_source(palette.ghost))
         self._version = self._passes_key = self._seen = None
         if self._latest is not None:
             self.show(self._latest)
@@ -91,6 +93,7 @@ class Ground:
             self._generation = snapshot.generation
             self.worked.clear()
             self.track.clear()
+            self.ghost.clear()
         if self._version != (snapshot.ground_version, snapshot.generation):
             self._version = (snapshot.ground_version, snapshot.generation)
             self._passes_key = None
@@ -98,6 +101,7 @@ class Ground:
         self._passes(snapshot)
         self.worked.feed(snapshot.worked)
         self.track.feed(snapshot.track)
+        self.ghost.feed(None if snapshot.ghost is None else snapshot.ghost.track)
         self._measure(snapshot)
 
     def measure_anew(self) -> Extent | None:

@@ -91,6 +91,7 @@ class ClientScene:
         self._number_node: viser.LineSegmentsHandle | None = None
         self._open_worked: viser.MeshHandle | None = None
         self._open_track: viser.LineSegmentsHandle | None = None
+        self._open_ghost: viser.LineSegmentsHandle | None = None
         client.camera.fov = FIELD_OF_VIEW
 
     @property
@@ -123,6 +124,8 @@ class ClientScene:
             self._open_worked.color = lit_source(palette.worked, palette.light)
         if self._open_track is not None:
             self._open_track.colors = np.array(flat_source(palette.track), dtype=np.uint8)
+        if self._open_ghost is not None:
+            self._open_ghost.colors = np.array(flat_source(palette.ghost), dtype=np.uint8)
 
     def _colour(self, name: str) -> Rgb:
         palette = self._palette
@@ -291,6 +294,17 @@ class ClientScene:
             self._open_track = add_track(self._client.scene, f"{WORLD}/track_open", ground.track.open_array(), colour)
         elif self._changed("track", ground.track.version):
             self._open_track.points = ground.track.open_array()
+        self._newest_ghost(ground)
+
+    def _newest_ghost(self, ground: Ground) -> None:
+        """The open array of the ghost's track, in a replay that has one."""
+        if not self._changed("ghost", ground.ghost.version):
+            return
+        if self._open_ghost is not None:
+            self._open_ghost.points = ground.ghost.open_array()
+        elif ground.ghost.version:
+            colour = flat_source(self._palette.ghost)
+            self._open_ghost = add_track(self._client.scene, f"{WORLD}/ghost_open", ground.ghost.open_array(), colour)
 
     def _changed(self, name: str, key: object) -> bool:
         """True once for each new ``key`` of this part of the scene."""

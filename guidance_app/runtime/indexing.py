@@ -5,11 +5,13 @@ that stands for the content, the documents, the filter and this very program. A 
 what comes from elsewhere (a backup, a bug report) brings none along, as reading one runs what is written in it.
 """
 
+import contextlib
 import hashlib
 import io
 import json
 import logging
 import multiprocessing
+import os
 import pickle
 import signal
 import sys
@@ -20,7 +22,7 @@ from importlib.metadata import PackageNotFoundError, version
 from multiprocessing.connection import Connection
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, BinaryIO
 
 from platformdirs import user_cache_dir
 
@@ -35,8 +37,11 @@ log = logging.getLogger(__name__)
 
 CHECKPOINT_S = 60.0
 """Seconds of the recording between two checkpoints: at 10 Hz some 600 epochs to take again, at most, after a jump."""
+LOOK_EVERY = 0.1
+"""Seconds until it is noticed that the replay has been closed."""
 KEPT = 20
 """Indexes in the cache folder; beyond that the one not used for longest goes."""
+ENVIRONMENT_NAME = "GUIDANCE_CACHE"
 PACKAGE = Path(__file__).resolve().parent.parent
 
 
@@ -50,8 +55,9 @@ class IndexPart:
 
 
 def cache_folder() -> Path:
-    """Where indexes are kept."""
-    return Path(user_cache_dir("guidance-app", appauthor=False)) / "indexes"
+    """Where indexes are kept: GUIDANCE_CACHE, else the user's cache folder."""
+    named = os.environ.get(ENVIRONMENT_NAME, "")
+    return Path(named) if named else Path(user_cache_dir("guidance-app", appauthor=False)) / "indexes"
 
 
 def steps_between(timeline: Timeline, engines: Engines, index: int) -> Iterator[Event]:
@@ -106,7 +112,6 @@ class Index:
         self._every = every
         self._done = 0.0
         self._stop = threading.Event()
-        self._process: multiprocessing.process.BaseProcess | None = None
         self._thread = threading.Thread(target=self._run, name="index", daemon=True)
 
     @property
@@ -121,8 +126,6 @@ class Index:
     def close(self) -> None:
         """Ends it, and the process; what was made so far is dropped unless it was the whole."""
         self._stop.set()
-        if self._process is not None:
-            self._process.terminate()
         if self._thread.is_alive():
             self._thread.join(timeout=5.0)
 
@@ -185,32 +188,35 @@ class Index:
         """Lets a process make it, hands each part over as it comes, and keeps the whole."""
         context = multiprocessing.get_context("spawn")
         receiving, sending = context.Pipe(duplex=False)
-        self._process = context.Process(
+        process = context.Process(
             target=_work, args=(sending, self._timeline, self._setup, self._every), name="index", daemon=True
         )
-        self._process.start()
+        process.start()
         sending.close()
         feed = _Feed()
         unpickler = pickle.Unpickler(feed)  # noqa: S301 - from a process of this program, through its own pipe
-        kept: list[bytes] = []
+        kept = _Kept(path)
         try:
             while not self._stop.is_set():
+                if not receiving.poll(LOOK_EVERY):
+                    continue
                 frame = receiving.recv_bytes()
-                kept.append(frame)
+                kept.add(frame)
                 feed.give(frame)
                 part = unpickler.load()
                 self._take(part)
                 if part.checkpoint is None:
+                    kept.finish()
                     break
         except EOFError:
             if not self._stop.is_set():
                 log.warning("the process that makes the index of %s has ended early", self._timeline.description)
-            return
         finally:
+            kept.drop()
             receiving.close()
-            self._process.join(timeout=5.0)
-        if path is not None and not self._stop.is_set():
-            _keep(path, kept)
+            if self._stop.is_set():
+                process.terminate()
+            process.join(timeout=5.0)
 
     def _take(self, part: IndexPart) -> None:
         self._hear(part)
@@ -262,20 +268,51 @@ def _work(sending: Connection, timeline: Timeline, setup: Setup, every: float) -
         sending.close()
 
 
-def _keep(path: Path, frames: list[bytes]) -> None:
-    """Writes the cache; a full disk only means that the index is made again."""
-    temporary = path.with_suffix(f".{threading.get_ident()}.tmp")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
-        with temporary.open("wb") as file:
-            file.writelines(frames)
-        temporary.replace(path)
-        indexes = sorted(path.parent.glob("*.index"), key=lambda one: one.stat().st_mtime, reverse=True)
-        for old in indexes[KEPT:]:
-            old.unlink(missing_ok=True)
-    except OSError as error:
-        log.warning("the index is not kept: %s", error)
-        temporary.unlink(missing_ok=True)
+class _Kept:
+    """The cache's file while it is made; a full disk only means that it is made again the next time."""
+
+    def __init__(self, path: Path | None) -> None:
+        self._path = path
+        self._temporary = None if path is None else path.with_suffix(f".{os.getpid()}-{threading.get_ident()}.tmp")
+        self._file: BinaryIO | None = None
+        if self._temporary is not None:
+            with self._warned():
+                self._temporary.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+                self._file = self._temporary.open("wb")
+
+    def add(self, frame: bytes) -> None:
+        """One frame more."""
+        if self._file is not None:
+            with self._warned():
+                self._file.write(frame)
+
+    def finish(self) -> None:
+        """It is whole: takes its place, and the oldest go."""
+        if self._file is None or self._temporary is None or self._path is None:
+            return
+        with self._warned():
+            self._file.close()
+            self._temporary.replace(self._path)
+            indexes = sorted(self._path.parent.glob("*.index"), key=lambda one: one.stat().st_mtime, reverse=True)
+            for old in indexes[KEPT:]:
+                old.unlink(missing_ok=True)
+
+    def drop(self) -> None:
+        """Leaves nothing behind that is not whole."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+        if self._temporary is not None:
+            with contextlib.suppress(OSError):
+                self._temporary.unlink(missing_ok=True)
+
+    @contextlib.contextmanager
+    def _warned(self) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            log.warning("the index is not kept: %s", error)
+            self.drop()
 
 
 def _compared(setup: Setup) -> dict[str, object]:

@@ -7,6 +7,7 @@ look-ahead, which is about the screen and not about the work, stays as it was se
 that was set in a recorded drive.
 """
 
+import bisect
 import math
 import queue
 import threading
@@ -21,7 +22,7 @@ from guidance_app.model import Command, Commanded, Event, SetLookAhead, Snapshot
 from guidance_app.recording import RecordedDrive
 from guidance_app.runtime.checkpoints import Checkpoint, Checkpoints, PassStart, PassStarts
 from guidance_app.runtime.engines import Comparison, Engines, Setup
-from guidance_app.runtime.indexing import Index, IndexPart
+from guidance_app.runtime.indexing import CHECKPOINT_S, Index, IndexPart
 from guidance_app.runtime.session import Hearer, Publisher
 from guidance_app.runtime.tap import Tap
 from guidance_app.runtime.timeline import timeline_of
@@ -34,7 +35,9 @@ CHECKPOINT_EVERY = 20.0
 """Seconds of the log between two checkpoints that are kept while it is played."""
 BEFORE_PASS = 2.0
 """A jump to a pass goes so many seconds before it."""
-LONGEST_END = 0.001
+NEAR_START = 5.0
+SAME_PLACE = 0.5
+SHORTEST_WAIT = 0.001
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +92,18 @@ class ReplayControl:
         if start is None:
             return False
         self.seek(start.position - BEFORE_PASS)
+        return True
+
+    def step_pass(self, steps: int) -> bool:
+        """Jumps so many starts of a pass ahead, or back if negative; False where there is none."""
+        here = self._pacer.position + BEFORE_PASS
+        starts = [one.position for one in self._starts.found]
+        place = bisect.bisect_right(starts, here + SAME_PLACE) + steps - 1
+        if steps < 0 and place + 1 < len(starts) and here - starts[place + 1] > NEAR_START:
+            place += 1  # well inside a pass, back is its own start
+        if not 0 <= place < len(starts):
+            return False
+        self.seek(starts[place] - BEFORE_PASS)
         return True
 
     @property
@@ -150,11 +165,11 @@ class ReplaySession:
         """The drive as it was, with its own documents and filter; what it breaks off at is among the notices."""
         return cls(drive.job, drive, drive.filter_name, speed, drive.notices, drive.settings, compare=compare)
 
-    def make_index(self, folder: Path | None) -> None:
+    def make_index(self, folder: Path | None, every: float = CHECKPOINT_S) -> None:
         """Makes any second near: reads the index from this folder, or lets a process make it. Returns at once."""
         if self._indexing is None:
             self.replay.indexed = 0.0
-            self._indexing = Index(self._timeline, self._setup, self._take_part, folder)
+            self._indexing = Index(self._timeline, self._setup, self._take_part, folder, every)
             self._indexing.start()
 
     def wait_for_index(self, timeout: float) -> bool:
@@ -219,7 +234,7 @@ class ReplaySession:
         waits = [self._publisher.least_interval] if self._publisher.pending else []
         wake_at, speed = self._engines.wake_at, self._pacer.speed
         if self._timeline.closes_epochs and wake_at is not None and self._pacer.playing and math.isfinite(speed):
-            waits.append(max((wake_at - self._pacer.position) / speed, LONGEST_END))
+            waits.append(max((wake_at - self._pacer.position) / speed, SHORTEST_WAIT))
         return min(waits, default=None)
 
     def _close_epoch(self, until: float) -> None:

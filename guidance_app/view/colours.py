@@ -46,6 +46,7 @@ class Palette:
     number_done: Rgb
     worked: Rgb
     track: Rgb
+    ghost: Rgb
     predicted: Rgb
     uncertain: Rgb
     stale: Rgb
@@ -75,6 +76,7 @@ DAY = Palette(
     number_done=(150, 156, 150),
     worked=(62, 124, 148),
     track=(36, 82, 102),
+    ghost=(196, 92, 168),
     predicted=(70, 190, 222),
     uncertain=(226, 168, 224),
     stale=(170, 172, 174),
@@ -103,6 +105,7 @@ NIGHT = Palette(
     number_done=(84, 92, 92),
     worked=(22, 58, 74),
     track=(46, 84, 100),
+    ghost=(164, 88, 148),
     predicted=(44, 164, 184),
     uncertain=(150, 104, 150),
     stale=(112, 114, 116),

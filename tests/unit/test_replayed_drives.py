@@ -1,5 +1,6 @@
 """A recorded drive replayed: the same to the bit, from anywhere, by pass, with an index, and beside another filter."""
 
+import shutil
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -8,6 +9,7 @@ import pytest
 from support.drives import a_job, path_chunks, up_and_down
 from support.recordings import Heard, assert_same, driven_live, is_over, taken_again
 
+from guidance_app.estimation.filter import FilterSettings
 from guidance_app.model import Chunk, Commanded, LinkStatus, Nudge, SetLookAhead, SetWork, Snapshot
 from guidance_app.recording import RecordedDrive
 from guidance_app.runtime import Comparison, ReplaySession
@@ -109,9 +111,12 @@ def test_passes_are_found_and_jumped_to(session: ReplaySession) -> None:
 # --- the index --------------------------------------------------------------------------------------------------------
 
 
+EVERY = 20.0
+
+
 def collected(drive: RecordedDrive | FileLog, folder: Path | None, setup: Setup) -> list[IndexPart]:
     parts: list[IndexPart] = []
-    index = Index(timeline_of(drive), setup, parts.append, folder, every=20.0)
+    index = Index(timeline_of(drive), setup, parts.append, folder, EVERY)
     index.start()
     assert index.wait(PATIENCE)
     assert index.done == 1.0
@@ -124,18 +129,27 @@ def setup(drive: RecordedDrive) -> Setup:
     return Setup(drive.job, drive.filter_name, drive.settings, drive.notices)
 
 
-def test_an_index_made_by_a_process_is_kept_and_read_and_goes_on_to_the_bit(
-    drive: RecordedDrive, setup: Setup, known: list[Snapshot], tmp_path: Path
+@pytest.fixture(scope="module")
+def made(drive: RecordedDrive, setup: Setup, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[IndexPart]]:
+    """A cache with the drive's index, and the parts as the process gave them."""
+    folder = tmp_path_factory.mktemp("cache") / "indexes"
+    return folder, collected(drive, folder, setup)
+
+
+@pytest.fixture
+def cache(made: tuple[Path, list[IndexPart]], tmp_path: Path) -> Path:
+    return Path(shutil.copytree(made[0], tmp_path / "cache"))
+
+
+def test_an_index_is_read_from_the_cache_and_goes_on_to_the_bit(
+    drive: RecordedDrive, setup: Setup, known: list[Snapshot], made: tuple[Path, list[IndexPart]], cache: Path
 ) -> None:
-    made = collected(drive, tmp_path / "cache", setup)
-    (kept,) = (tmp_path / "cache").glob("*.index")
-    before = kept.stat().st_mtime_ns
+    (kept,) = cache.iterdir()
     content = kept.read_bytes()
-    read = collected(drive, tmp_path / "cache", setup)
+    read = collected(drive, cache, setup)
     assert kept.read_bytes() == content
-    assert kept.stat().st_mtime_ns >= before
-    assert len(made) == len(read) > 5
-    for one, other in zip(made, read, strict=True):
+    assert len(made[1]) == len(read) > 5
+    for one, other in zip(made[1], read, strict=True):
         assert one.starts == other.starts
     checkpoint = read[3].checkpoint
     assert checkpoint is not None
@@ -145,28 +159,26 @@ def test_an_index_made_by_a_process_is_kept_and_read_and_goes_on_to_the_bit(
     assert_same(engines.snapshot, known[-1])
 
 
-def test_a_damaged_index_is_made_again(drive: RecordedDrive, setup: Setup, tmp_path: Path) -> None:
-    collected(drive, tmp_path, setup)
-    (kept,) = tmp_path.glob("*.index")
+def test_a_damaged_index_is_made_again(drive: RecordedDrive, setup: Setup, cache: Path) -> None:
+    (kept,) = cache.iterdir()
     content = kept.read_bytes()
     kept.write_bytes(content[: len(content) // 2])
-    parts = collected(drive, tmp_path, setup)
+    parts = collected(drive, cache, setup)
     assert parts[-1].done == 1.0
     assert kept.stat().st_size > 0.9 * len(content)
 
 
-def test_another_setup_has_another_index(drive: RecordedDrive, setup: Setup, tmp_path: Path) -> None:
-    collected(drive, tmp_path, setup)
-    other = Setup(drive.job, "off", compare=Comparison(look_ahead=2.5))
-    collected(drive, tmp_path, other)
-    assert len(list(tmp_path.glob("*.index"))) == 2
+def test_another_setup_has_another_index(drive: RecordedDrive, cache: Path) -> None:
+    other = Setup(drive.job, "off", FilterSettings(), compare=Comparison(look_ahead=2.5, settings=FilterSettings()))
+    collected(drive, cache, other)
+    assert len(list(cache.glob("*.index"))) == 2
 
 
 def test_a_session_with_an_index_knows_all_passes_and_jumps_ahead_at_once(
-    drive: RecordedDrive, known: list[Snapshot], tmp_path: Path
+    drive: RecordedDrive, known: list[Snapshot], cache: Path
 ) -> None:
     session = ReplaySession.of_drive(drive)
-    session.make_index(tmp_path)
+    session.make_index(cache, EVERY)
     assert session.wait_for_index(PATIENCE)
     heard = Heard(session)
     session.start()
@@ -178,14 +190,14 @@ def test_a_session_with_an_index_knows_all_passes_and_jumps_ahead_at_once(
     session.close()
 
 
-def test_what_an_index_says_is_dropped_after_a_command(drive: RecordedDrive, tmp_path: Path) -> None:
+def test_what_an_index_says_is_dropped_after_a_command(drive: RecordedDrive, cache: Path) -> None:
     session = ReplaySession.of_drive(drive)
     heard = Heard(session)
     session.start()
     sought(session, heard, 30.0)
     session.post(SetWork(down=False))
     heard.wait(lambda one: not one.working and one.work_mode == "button")
-    session.make_index(tmp_path)
+    session.make_index(cache, EVERY)
     assert session.wait_for_index(PATIENCE)
     found = sought(session, heard, 70.0)
     assert found.work_mode == "button"
@@ -259,3 +271,30 @@ def test_what_documents_cannot_hold_is_refused() -> None:
         Engines.made_of(Setup(a_job(), compare=Comparison(look_ahead=9.0)))
     with pytest.raises(ValueError, match="antenna_height"):
         Engines.made_of(Setup(a_job(), compare=Comparison(antenna=(0.0, 0.0, 99.0))))
+
+
+def test_passes_are_stepped_through(session: ReplaySession) -> None:
+    heard = Heard(session)
+    session.start()
+    heard.wait(is_over)
+    session.replay.pause()
+    starts = [one.position for one in session.replay.passes]
+    assert not session.replay.step_pass(1)
+
+    def position() -> float:
+        return session.replay.state.position + 2.0
+
+    session.replay.seek(starts[1] - 2.0)
+    assert session.replay.step_pass(1)
+    assert position() == pytest.approx(starts[2])
+    session.replay.seek(starts[1] + 20.0)
+    assert session.replay.step_pass(-1)
+    assert position() == pytest.approx(starts[1])
+    assert session.replay.step_pass(-1)
+    assert position() == pytest.approx(max(starts[0], 2.0))
+    assert not session.replay.step_pass(-1)
+
+
+def test_an_index_that_cannot_be_kept_is_there_all_the_same(drive: RecordedDrive, setup: Setup, tmp_path: Path) -> None:
+    (tmp_path / "cache").write_text("a file stands here", encoding="utf-8")
+    assert collected(drive, tmp_path / "cache", setup)[-1].done == 1.0

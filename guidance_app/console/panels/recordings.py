@@ -12,7 +12,7 @@ from guidance_app.console.reviewing.listing import RecordingList
 from guidance_app.console.reviewing.looking import Looking
 from guidance_app.console.widgets import Shown, notice_html
 from guidance_app.language import message
-from guidance_app.runtime import ReplaySession
+from guidance_app.runtime import ReplaySession, cache_folder
 from guidance_app.store import StoreError
 from guidance_app.store.recordings import open_recording
 from guidance_app.store.recordings_list import list_recordings
@@ -85,7 +85,9 @@ class Recordings:
             if not len(drive.events):
                 msg = self._hands.words("This recording holds no event.")
                 raise StoreError(msg)
-            self._hands.house.take(ReplaySession.of_drive(drive))
+            session = ReplaySession.of_drive(drive)
+            session.make_index(cache_folder())
+            self._hands.house.take(session)
             self._hands.go(Place.DRIVE)
 
         self._hands.later(begin)

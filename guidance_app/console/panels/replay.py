@@ -5,8 +5,9 @@ from typing import ClassVar
 import viser
 
 from guidance_app.console.desk import Desk, Hands
-from guidance_app.console.widgets import Choice, Followed, Shown, notice_html, rows_html
+from guidance_app.console.widgets import Choice, Followed, Shown, buttons, notice_html, rows_html
 from guidance_app.language import message
+from guidance_app.runtime import ReplayControl
 from guidance_app.view.status import clock, replay_rows
 
 __all__ = ["Replay"]
@@ -26,6 +27,7 @@ class Replay:
             msg = "the replay panel needs a session that plays a recording"
             raise ValueError(msg)
         self._words = words = hands.words
+        self._control = control
         state = control.state
         self._play = gui.add_button(words("Pause"), color="green")
 
@@ -40,6 +42,8 @@ class Replay:
         slider = gui.add_slider("00:00", 0, end, 1, 0, marks=((0, words("start")), (end, clock(state.duration))))
         self._slider = slider
         self._position = Followed(slider, lambda second: control.seek(float(second)))
+        steps = ((words("Before"), lambda: _step(control, -1)), (words("Next"), lambda: _step(control, 1)))
+        self._passes = buttons(gui, words("Pass"), steps)
         self._speed = Choice(gui, words("Speed ×"), tuple(_SPEEDS), lambda name: control.set_speed(_SPEEDS[name]))
         self._rows = Shown(gui)
         self._notices = Shown(gui)
@@ -53,6 +57,12 @@ class Replay:
         self._slider.label = clock(state.position)
         self._position.show(int(state.position))
         self._speed.show(_NAMES.get(state.speed, ""))
+        self._passes.visible = bool(self._control.passes)
         rows = replay_rows(state.position, state.duration, state.speed, state.catching_up, self._words)
         self._rows.show(rows_html(rows))
         self._notices.show(notice_html(self._words.say(one) for one in desk.snapshot.notices))
+
+
+def _step(control: ReplayControl, steps: int) -> None:
+    """To the start of a pass; where there is none known, nothing happens."""
+    control.step_pass(steps)
