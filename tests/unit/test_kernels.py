@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from guidance_app.estimation.imm_kernels import MODELS, WITH_POSITION, WITHOUT_POSITION, combined, imm_step
+from guidance_app.estimation.imm_kernels import MODELS, WITH_POSITION, WITHOUT_POSITION, combined, imm_step, summary
 from guidance_app.estimation.kernels import (
     CURVATURE,
     DRIFT_EAST,
@@ -297,6 +297,28 @@ def test_the_combined_covariance_holds_the_models_disagreement():
     mean, covariance = combined((x, np.zeros((MODELS, STATES, STATES)), np.full(MODELS, 1 / MODELS)), STATES)
     assert mean[EAST] == pytest.approx(0)
     assert covariance[EAST, EAST] == pytest.approx(1 / 2)
+
+
+def test_what_is_shown_grows_with_how_far_the_fixes_lie_off_to_one_side():
+    random = np.random.default_rng(11)
+    belief, z = some_belief(random), some_reading(random)
+    still, behind = (summary(belief, STATES, z, np.array([lag, 0.0]), fresh=False) for lag in (0.0, 0.1))
+    assert behind[:5] == pytest.approx(still[:5])
+    assert behind[5] > still[5] + 0.1**2
+    assert behind[7] == still[7]
+    fresh = summary(belief, STATES, z, np.zeros(2), fresh=True)
+    assert np.any(fresh[9:] != 0.0)
+
+
+def test_at_rest_the_whole_covariance_is_shown_and_driving_less():
+    random = np.random.default_rng(12)
+    x, p, w = some_belief(random)
+    z = some_reading(random)
+    x[:, SPEED] = 0.0
+    whole = summary((x, p, w), STATES, z, np.zeros(2), fresh=False)
+    assert whole[5] == pytest.approx(combined((x, p, w), STATES)[1][EAST, EAST])
+    x[:, SPEED] = 2.0
+    assert summary((x, p, w), STATES, z, np.zeros(2), fresh=False)[5] < whole[5]
 
 
 # --- the smoother --------------------------------------------------------------------------------------------------

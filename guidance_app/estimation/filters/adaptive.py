@@ -37,8 +37,8 @@ from guidance_app.estimation.imm_kernels import (
     WITHOUT_POSITION,
     Belief,
     Motion,
-    combined,
     imm_step,
+    summary,
 )
 from guidance_app.estimation.kernels import (
     CURVATURE,
@@ -71,6 +71,7 @@ HEADING_LOST = math.radians(35)
 """With a heading less certain than this the screen says that the direction is unknown."""
 STANDING_SPEED = 0.06
 GYRO_BIAS_SD = 0.01
+NO_LAG = np.zeros(2)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,7 +79,7 @@ class _State:
     """All that is remembered; replaced in each step, its arrays never written to.
 
     ``belief`` is each model's mean (4, 9), covariance (4, 9, 9) and weight (4,); ``n`` how many states are live;
-    ``believed`` the pose at the last fix that was not rejected.
+    ``believed`` the pose at the last fix that was not rejected; ``lag`` (2,) how far the last fixes lay off the poses.
     """
 
     t: float
@@ -87,6 +88,7 @@ class _State:
     still: Stillness
     pose: Pose
     believed: Pose
+    lag: FloatArray
     rejected: tuple[Refused, ...] = ()
     backed: float = 0.0
 
@@ -162,7 +164,7 @@ class Adaptive:
             return _Before(waiting, _unknown(z), bias, bias_sd, still, before.pointed if before else None)
         if before is not None and before.pointed is not None and z.heading is None:
             departure = departure.as_before(before.pointed)
-        return _started(z, departure, noise, self._tables.models(z), (bias, bias_sd), still)
+        return _started(z, departure, noise, (self._settings.adaptive, self._tables.models(z)), (bias, bias_sd), still)
 
 
 def _unknown(z: Measurement) -> Pose:
@@ -186,10 +188,11 @@ def _started(
     z: Measurement,
     departure: Departure,
     noise: ReceiverNoise,
-    models: ModelSet,
+    kit: tuple[AdaptiveSettings, ModelSet],
     gyro: tuple[float, float],
     still: Stillness,
 ) -> _State:
+    settings, models = kit
     forward, right, _ = z.antenna
     east, north = offset_point(z.east, z.north, departure.heading, -forward, -right)
     x = np.zeros((MODELS, STATES))
@@ -214,8 +217,10 @@ def _started(
             p[:, drift, axis] = p[:, axis, drift] = -(noise.drift**2)
     w = np.full(MODELS, 1.0 / MODELS)
     belief = (x, p, w)
-    pose = _pose(z, belief, n, None, blind=False)
-    return _State(z.t, belief, n, still, pose, pose)
+    epoch = readings(z, noise, settings, None)
+    shown = summary(belief, n, epoch, NO_LAG, fresh=False).tolist()
+    pose = _pose(z, shown, None, blind=False)
+    return _State(z.t, belief, n, still, pose, pose, NO_LAG)
 
 
 def _after_gap(state: _State, z: Measurement) -> "_State | _Before":
@@ -262,8 +267,10 @@ def _advanced(
         unchanged = _unchanged(state, dt, epoch, motion)
     belief, rejected = unchanged or _corrected(state, z, dt, epoch, motion)
     belief, backed = _turned_round(belief, z, state.backed, dt)
-    pose = _pose(z, belief, state.n, bound, blind=bool(rejected))
-    return _State(z.t, belief, state.n, still, pose, state.believed if rejected else pose, rejected, backed)
+    shown = summary(belief, state.n, epoch, state.lag, fresh=unchanged is None and not rejected)
+    pose = _pose(z, shown.tolist(), bound, blind=bool(rejected))
+    believed = state.believed if rejected else pose
+    return _State(z.t, belief, state.n, still, pose, believed, shown[9:], rejected, backed)
 
 
 def _unchanged(
@@ -348,20 +355,19 @@ def _turned_round(belief: Belief, z: Measurement, backed: float, dt: float) -> t
     return (x, p, w), 0.0
 
 
-def _pose(z: Measurement, belief: Belief, n: int, bound: float | None, *, blind: bool) -> Pose:
-    """The four models' mean; ``bound`` is a standing tractor's, ``blind`` says that the fix was refused."""
-    mean, covariance = combined(belief, n)
-    speed = float(mean[SPEED])
-    sigma = math.sqrt(covariance[HEADING, HEADING])
+def _pose(z: Measurement, shown: list[float], bound: float | None, *, blind: bool) -> Pose:
+    """The models' ``summary`` as a pose; ``bound`` is a standing tractor's, ``blind`` says that the fix was refused."""
+    east, north, heading, speed, curvature, var_east, cov, var_north, var_heading, _, _ = shown
+    sigma = math.sqrt(var_heading)
     return Pose(
         t=z.t,
         arrival=z.arrival,
-        east=float(mean[EAST]),
-        north=float(mean[NORTH]),
-        heading=wrap_2pi(float(mean[HEADING])),
+        east=east,
+        north=north,
+        heading=wrap_2pi(heading),
         speed=speed,
-        curvature=float(mean[CURVATURE]),
-        covariance=(float(covariance[EAST, EAST]), float(covariance[EAST, NORTH]), float(covariance[NORTH, NORTH])),
+        curvature=curvature,
+        covariance=(var_east, cov, var_north),
         heading_sigma=sigma,
         heading_known=sigma < HEADING_LOST,
         standing=bound is not None and abs(speed) < STANDING_SPEED,
