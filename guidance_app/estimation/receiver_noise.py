@@ -49,9 +49,15 @@ def noise_of(z: Measurement) -> ReceiverNoise:
     return ReceiverNoise(noise.white, max(said, noise.white), noise.drift_time)
 
 
-def fix_covariance(z: Measurement) -> tuple[float, float, float]:
-    """What one fix alone says: (var east, 0, var north) of rounding, scatter and drift together."""
+def fix_covariance(z: Measurement, measured: tuple[float, float, float] | None = None) -> tuple[float, float, float]:
+    """What one fix alone says: (var east, cov, var north) of rounding, scatter and drift together.
+
+    ``measured`` is the sample covariance found standing at the start point: the scatter then, if it is the larger.
+    """
     noise = noise_of(z)
     cell_east, cell_north = z.cell or (DEFAULT_CELL, DEFAULT_CELL)
-    spread = noise.white**2 + noise.drift**2
-    return cell_east**2 / 12 + spread, 0.0, cell_north**2 / 12 + spread
+    spread = noise.white**2
+    east, cov, north = cell_east**2 / 12 + spread, 0.0, cell_north**2 / 12 + spread
+    if measured is not None and measured[0] + measured[2] > east + north:
+        east, cov, north = max(measured[0], spread), measured[1], max(measured[2], spread)
+    return east + noise.drift**2, cov, north + noise.drift**2

@@ -76,8 +76,8 @@ def test_a_dgps_receivers_slow_error_is_not_followed_far(tractor: tuple[Recordin
     """The same log as what it is: part of what the finer digits show is then held to be the receiver's drift."""
     recording, truth = tractor
     ours = score(estimate_recording(recording, "adaptive"), truth)
-    assert ours.rms * CM < 15
-    assert ours.worst < 0.6
+    assert ours.rms * CM < 16
+    assert ours.worst < 0.8
 
 
 def test_braking_hard_the_shown_position_stays_with_the_fix(car: tuple[Recording, Track]) -> None:

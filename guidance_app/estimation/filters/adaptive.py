@@ -70,6 +70,8 @@ LONGEST_BACKING = 30.0
 HEADING_LOST = math.radians(35)
 """With a heading less certain than this the screen says that the direction is unknown."""
 STANDING_SPEED = 0.06
+MOST_SCATTER = 1.0
+"""Of a standing receiver's scatter not more than so many metres is believed to be white."""
 GYRO_BIAS_SD = 0.01
 NO_LAG = np.zeros(2)
 
@@ -150,8 +152,10 @@ class Adaptive:
         if self._start is None:
             return noise
         east, _, north = self._start.covariance
-        measured = math.sqrt(0.5 * (east + north))
-        return replace(noise, white=min(max(measured, 0.5 * noise.white), 4.0 * noise.white))
+        cell = z.cell or (DEFAULT_CELL, DEFAULT_CELL)
+        flicker = 0.125 * (cell[0] ** 2 + cell[1] ** 2)  # between two cells, by the rounding alone
+        measured = math.sqrt(max(0.5 * (east + north) - flicker, 0.0))
+        return replace(noise, white=min(max(measured, 0.5 * noise.white), MOST_SCATTER))
 
     def _begun(self, before: _Before | None, z: Measurement, noise: ReceiverNoise) -> "_State | _Before":
         waiting = (before.waiting if before else Waiting()).to(z)

@@ -137,7 +137,7 @@ class GyroFilter:
         travel = (before.travel if before else Travel()).to(z.east, z.north, z.heading)
         still = before.still.after(z, noise_of(z).white) if before else Stillness.of(z)
         standing = still.speed_bound(z, noise_of(z).white) is not None
-        heading = _input_heading(before, z, travel, standing=standing)
+        heading = _input_heading(before, z, travel, self._gyro_bias(), standing=standing)
         if heading is None:
             pose = _unknown(z)
             self._state = _State(z, travel, still, pose.speed, None, None, None, 0, pose)
@@ -180,15 +180,21 @@ class GyroFilter:
         return _State(z, travel, still, speed, heading, x, p, rejected, pose)
 
     def _fix_noise(self, z: Measurement) -> FloatArray:
-        """R: what was measured at the start point, else by the quality of the fix."""
-        if self._start is not None:
-            east, cross, north = self._start.covariance
-            return np.array([[east + 1e-4, cross], [cross, north + 1e-4]])
+        """R: what was measured at the start point, but not less than the rounding; else by the quality of the fix."""
         noise = noise_of(z)
-        if noise.drift > 0.0:
+        if self._start is None and noise.drift > 0.0:
             return np.eye(2) * self._settings.gyro_ekf.position_noise
         cell = z.cell or (DEFAULT_CELL, DEFAULT_CELL)
-        return np.diag([cell[0] ** 2 / 12 + noise.white**2, cell[1] ** 2 / 12 + noise.white**2])
+        least = np.diag([cell[0] ** 2 / 12 + noise.white**2, cell[1] ** 2 / 12 + noise.white**2])
+        if self._start is None:
+            return least
+        east, cross, north = self._start.covariance
+        measured = np.array([[east, cross], [cross, north]])
+        return measured if np.trace(measured) > np.trace(least) else least
+
+    def _gyro_bias(self) -> float:
+        """The gyro's mean rate while standing at the start point, zero when there was none."""
+        return 0.0 if self._start is None or self._start.gyro_bias is None else self._start.gyro_bias
 
 
 def _wrong_way(before: _State, z: Measurement, travel: Travel) -> bool:
@@ -214,7 +220,9 @@ def _unknown(z: Measurement) -> Pose:
     )
 
 
-def _input_heading(before: _State | None, z: Measurement, travel: Travel, *, standing: bool) -> float | None:
+def _input_heading(
+    before: _State | None, z: Measurement, travel: Travel, bias: float, *, standing: bool
+) -> float | None:
     """The attitude sensor's heading, else the gyro carried on; without both the first course, held."""
     if z.heading is not None:
         return z.heading
@@ -223,7 +231,7 @@ def _input_heading(before: _State | None, z: Measurement, travel: Travel, *, sta
     if z.yaw_rate is None or standing or z.t - before.z.t > LONGEST_GAP:
         return before.heading
     mean_rate = z.yaw_rate if before.z.yaw_rate is None else 0.5 * (z.yaw_rate + before.z.yaw_rate)
-    return before.heading + mean_rate * (z.t - before.z.t)
+    return before.heading + (mean_rate - bias) * (z.t - before.z.t)
 
 
 def _input_speed(before: _State | None, z: Measurement, travel: Travel, *, standing: bool) -> float:

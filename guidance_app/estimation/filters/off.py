@@ -32,6 +32,7 @@ class Off:
     def __init__(self, settings: FilterSettings) -> None:
         self._settings = settings
         self._state: _State | None = None
+        self._scatter: tuple[float, float, float] | None = None
 
     def step(self, z: Measurement) -> Pose:
         """The pose of this fix; ``heading_known`` is False until one metre has been driven."""
@@ -40,17 +41,18 @@ class Off:
             return before.pose
         travel = (before.travel if before else Travel()).to(z.east, z.north, z.heading)
         speed = _speed(before, z)
-        pose = _pose(z, travel, speed)
+        pose = _pose(z, travel, speed, fix_covariance(z, self._scatter))
         self._state = _State(z, travel, pose)
         return pose
 
     def begin(self, start: Start) -> None:
-        """Nothing is estimated here, so nothing can be taken over."""
+        """The scatter of the fixes at the start point is what the ellipse shows. There is no gyro here."""
+        self._scatter = start.covariance
 
     def fork(self) -> Filter:
         """An independent copy."""
         other = Off(self._settings)
-        other._state = self._state
+        other._state, other._scatter = self._state, self._scatter
         return other
 
 
@@ -64,7 +66,7 @@ def _speed(before: _State | None, z: Measurement) -> float:
     return float(((z.east - last.east) ** 2 + (z.north - last.north) ** 2) ** 0.5 / (z.t - last.t))
 
 
-def _pose(z: Measurement, travel: Travel, speed: float) -> Pose:
+def _pose(z: Measurement, travel: Travel, speed: float, covariance: tuple[float, float, float]) -> Pose:
     heading = travel.heading
     east, north = z.east, z.north
     if heading is not None:
@@ -77,7 +79,7 @@ def _pose(z: Measurement, travel: Travel, speed: float) -> Pose:
         north=north,
         heading=heading or 0.0,
         speed=-speed if travel.reverse else speed,
-        covariance=fix_covariance(z),
+        covariance=covariance,
         heading_known=heading is not None,
         standing=speed < STANDING,
         reverse=travel.reverse,

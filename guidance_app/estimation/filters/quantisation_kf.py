@@ -63,6 +63,7 @@ class QuantisationFilter:
     def __init__(self, settings: FilterSettings) -> None:
         self._settings = settings
         self._memory: _Memory | None = None
+        self._scatter: tuple[float, float, float] | None = None
 
     def step(self, z: Measurement) -> Pose:
         """The pose; until heading and speed are there it is the fix itself with ``heading_known`` False."""
@@ -76,17 +77,21 @@ class QuantisationFilter:
         measured = _course_and_speed(z, fixes, travel, memory.course if memory else None)
         state, scale = _next_state(memory, z, measured, self._settings.quantisation_kf)
         course = measured[0] if measured else None
-        pose = _pose(z, state, scale, travel)
+        pose = _pose(z, state, scale, travel, fix_covariance(z, self._scatter))
         self._memory = _Memory((*fixes, (z.t, z.east, z.north))[-STEPS:], travel, course, state, scale, pose)
         return pose
 
     def begin(self, start: Start) -> None:
-        """Nothing to take over: only the ratio of Q to R matters here, and both are the paper's."""
+        """The scatter of the fixes at the start point is what the ellipse is at least.
+
+        R stays the paper's: only its ratio to Q matters, and neither has a unit. There is no gyro here.
+        """
+        self._scatter = start.covariance
 
     def fork(self) -> Filter:
         """An independent copy."""
         other = QuantisationFilter(self._settings)
-        other._memory = self._memory
+        other._memory, other._scatter = self._memory, self._scatter
         return other
 
 
@@ -189,8 +194,9 @@ def correct(s: FourStates, z: tuple[float, float, float, float], r: Variances) -
     return x, y, theta, u, pxx, pxy, pxu, pyy, pyu, puu, (1.0 - kt) * pt
 
 
-def _pose(z: Measurement, state: FourStates | None, scale: float, travel: Travel) -> Pose:
-    floor = fix_covariance(z)
+def _pose(
+    z: Measurement, state: FourStates | None, scale: float, travel: Travel, floor: tuple[float, float, float]
+) -> Pose:
     if state is None:
         return Pose(
             z.t,
