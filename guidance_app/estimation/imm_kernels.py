@@ -30,6 +30,7 @@ from guidance_app.estimation.observation_kernels import (
     MEASUREMENTS,
     STANDING,
     VELOCITY_ALONG,
+    WHITE,
     Z_EAST,
     antenna,
     observe,
@@ -195,7 +196,21 @@ def summary(belief: Belief, n: int, z: FloatArray, lag: FloatArray, fresh: bool)
     out[6] = calm * covariance[EAST, NORTH] + BEHIND * out[9] * out[10]
     out[7] = calm * covariance[NORTH, NORTH] + BEHIND * out[10] * out[10]
     out[8] = covariance[HEADING, HEADING]
+    if not fresh and abs(mean[SPEED]) < DRIVING:
+        _bound_by_cell(covariance, n, z, out)
     return out
+
+
+@numba.njit(cache=True)
+def _bound_by_cell(covariance: FloatArray, n: int, z: FloatArray, out: FloatArray) -> None:
+    """A tractor that stands on the fix that it had is in that fix's cell, however long; ``out`` is changed in place."""
+    for axis in range(2):
+        most = z[CELL_EAST + axis] ** 2 / 12.0 + z[WHITE] ** 2
+        if n > DRIFT_EAST:
+            most += covariance[DRIFT_EAST + axis, DRIFT_EAST + axis]
+        share = min(1.0, most / out[5 + 2 * axis])
+        out[5 + 2 * axis] *= share
+        out[6] *= math.sqrt(share)
 
 
 @numba.njit(cache=True)

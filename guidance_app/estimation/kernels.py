@@ -42,9 +42,9 @@ GYRO_WALK, SLIP_SD, SLIP_TIME, DRIFT_SD, DRIFT_TIME, HEADING_WALK = range(6)
 """The common part of the process noise: what all motion models share."""
 COMMON = 6
 
-WANDER, WANDERED = 0.05, 0.06
-"""At rest the position walks by so many metres in a second, and so far: no receiver keeps to the millimetre. Without it
-the 95 % ellipse held 65 to 72 % of a standing tractor's fixes."""
+WANDER = 0.05
+"""At rest the position walks by so many metres in a second: no receiver keeps to the millimetre. Without it the 95 %
+ellipse held 65 to 72 % of a standing tractor's fixes."""
 
 LONGEST_STEP = 0.5
 """A longer prediction is cut into equal steps no longer than this, in seconds."""
@@ -152,8 +152,8 @@ def add_process_noise(x: FloatArray, p: FloatArray, dt: float, model: FloatArray
     moving = min(1.0, abs(x[SPEED]) / 0.3)
     p[HEADING, HEADING] += (common[HEADING_WALK] * moving) ** 2 * dt
     walk = (WANDER * (1.0 - moving)) ** 2 * dt
-    p[EAST, EAST] += walk * max(0.0, 1.0 - p[EAST, EAST] / WANDERED**2)
-    p[NORTH, NORTH] += walk * max(0.0, 1.0 - p[NORTH, NORTH] / WANDERED**2)
+    p[EAST, EAST] += walk
+    p[NORTH, NORTH] += walk
     sharpest = min(model[CURVATURE_SD], SIDEWAYS / max(x[SPEED] * x[SPEED], 0.01))
     bend = sharpest**2 * -math.expm1(-2.0 * dt / model[MEMORY])
     way = x[SPEED] * dt

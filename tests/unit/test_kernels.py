@@ -7,7 +7,15 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from guidance_app.estimation.imm_kernels import MODELS, WITH_POSITION, WITHOUT_POSITION, combined, imm_step, summary
+from guidance_app.estimation.imm_kernels import (
+    BEHIND,
+    MODELS,
+    WITH_POSITION,
+    WITHOUT_POSITION,
+    combined,
+    imm_step,
+    summary,
+)
 from guidance_app.estimation.kernels import (
     CURVATURE,
     DRIFT_EAST,
@@ -315,8 +323,11 @@ def test_at_rest_the_whole_covariance_is_shown_and_driving_less():
     x, p, w = some_belief(random)
     z = some_reading(random)
     x[:, SPEED] = 0.0
-    whole = summary((x, p, w), STATES, z, np.zeros(2), fresh=False)
+    whole = summary((x, p, w), STATES, z, np.zeros(2), fresh=True)
+    whole[5] -= BEHIND * whole[9] ** 2
     assert whole[5] == pytest.approx(combined((x, p, w), STATES)[1][EAST, EAST])
+    standing = summary((x, p, w), STATES, z, np.zeros(2), fresh=False)
+    assert standing[5] <= whole[5]
     x[:, SPEED] = 2.0
     assert summary((x, p, w), STATES, z, np.zeros(2), fresh=False)[5] < whole[5]
 
