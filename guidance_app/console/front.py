@@ -10,7 +10,7 @@ import contextlib
 import gzip
 import hashlib
 import mimetypes
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote, unquote
@@ -25,6 +25,7 @@ from starlette.websockets import WebSocket
 from guidance_app.console.files import LARGEST_UPLOAD, LONGEST_NAME, Download, Files, Taker
 from guidance_app.console.live import LiveHub
 from guidance_app.console.proxy import pass_through
+from guidance_app.language import Words, message
 
 __all__ = [
     "ICON",
@@ -107,7 +108,12 @@ def _media_type(path: Path) -> str:
 
 
 def front_app(
-    files: Mapping[str, Asset], hub: LiveHub, inner_uri: str, inner_headers: dict[str, str], exchanged: Files
+    files: Mapping[str, Asset],
+    hub: LiveHub,
+    inner_uri: str,
+    inner_headers: dict[str, str],
+    exchanged: Files,
+    language: Callable[[], Words],
 ) -> Starlette:
     """The whole front, without access control: ``guard.Guard`` goes around it."""
     page_file = patched_page()
@@ -130,10 +136,10 @@ def front_app(
         return PlainTextResponse("nothing to download", 404) if made is None else _attached(made)
 
     async def upload(request: Request) -> Response:
-        take = exchanged.taker(request.path_params["token"])
+        take, words = exchanged.taker(request.path_params["token"]), language()
         if take is None:
-            return PlainTextResponse("No file is awaited here any more: open the form again.", 404)
-        return await _taken(request, take)
+            return PlainTextResponse(words("No file is awaited here any more: open the form again."), 404)
+        return await _taken(request, take, words)
 
     async def viser_socket(websocket: WebSocket) -> None:
         await pass_through(websocket, inner_uri, inner_headers)
@@ -166,14 +172,15 @@ def _attached(made: Download) -> Response:
     return Response(made.data, headers=headers, media_type=made.media_type)
 
 
-async def _taken(request: Request, take: Taker) -> Response:
+async def _taken(request: Request, take: Taker, words: Words) -> Response:
     """The posted file handed to who awaits it; one that is too large is not read to its end."""
     name = unquote(request.headers.get("x-file-name", ""))[:LONGEST_NAME] or "file"
     body = bytearray()
     async for part in request.stream():
         body += part
         if len(body) > LARGEST_UPLOAD:
-            words = f"{name} is larger than {LARGEST_UPLOAD // 2**20} MB, the most that is taken; nothing was stored."
-            return PlainTextResponse(words, 413, {"Connection": "close"})
+            pattern = message("{name} is larger than {most} MB, the most that is taken; nothing was stored.")
+            said = words(pattern, name=name, most=LARGEST_UPLOAD // 2**20)
+            return PlainTextResponse(said, 413, {"Connection": "close"})
     await asyncio.to_thread(take, name, bytes(body))
     return PlainTextResponse("")

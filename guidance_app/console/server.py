@@ -118,7 +118,7 @@ class Console:
 
     def _application(self, inner: InnerViser, port: int) -> Guard:
         files = own_files(static_folder())
-        app = front_app(files, self.hub, inner.uri, inner.headers, self.house.files)
+        app = front_app(files, self.hub, inner.uri, inner.headers, self.house.files, self._words)
         names = Names(own_names() | {self._host, LOOPBACK, "::1"}, any_number=self._lan)
         return Guard(app, Door(self.pin), files, names, cookie=f"guidance_{port}", words=self._words)
 

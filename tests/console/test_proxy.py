@@ -24,11 +24,13 @@ from websockets.sync.server import Server, ServerConnection, serve
 from websockets.typing import Origin, Subprotocol
 
 from guidance_app.console.address import bind
+from guidance_app.console.files import Files
 from guidance_app.console.front import front_app, own_files, static_folder
 from guidance_app.console.inner import SECRET_HEADER, InnerViser
 from guidance_app.console.live import LiveHub
 from guidance_app.console.server import Console
 from guidance_app.console.web_server import WebServer
+from guidance_app.language import ENGLISH
 
 PATIENCE_S = 10.0
 MEGABYTE = 1_000_000
@@ -170,7 +172,9 @@ def proxied() -> Iterator[tuple[Inner, str]]:
 @contextlib.contextmanager
 def _fronted(server: Server) -> Iterator[str]:
     port = server.socket.getsockname()[1]
-    app = front_app(own_files(static_folder()), LiveHub(HandSession()), f"ws://127.0.0.1:{port}/", {}, {})
+    app = front_app(
+        own_files(static_folder()), LiveHub(HandSession()), f"ws://127.0.0.1:{port}/", {}, Files(), lambda: ENGLISH
+    )
     listener = bind("127.0.0.1", 0)
     front = WebServer(app, listener)
     try:

@@ -67,10 +67,10 @@ class FromFile:
             if question.option == "inexact":
                 self._choice.ask_for_consent()
             asks = self._words("Answer below under 'What the file does not say', then read it again.")
-            self._question.show(notice_html([str(question), asks]))
+            self._question.show(notice_html([self._words.say(str(question)), asks]))
             return
         except (ExchangeError, BoundaryError) as error:
-            self._question.show(notice_html([str(error)]))
+            self._question.show(notice_html([self._words.say(str(error))]))
             return
         checked = tuple(CheckedField(one.document, one.area, one.perimeter, one.remarks) for one in fields)
         self._atelier.offer(checked, name)

@@ -57,9 +57,9 @@ class Typing:
             except CornerError as error:
                 if error.inexact:
                     self._choice.ask_for_consent()
-                msg = self._words("Line {number}: {why}", number=number, why=str(error))
+                msg = self._words("Line {number}: {why}", number=number, why=self._words.say(str(error)))
                 raise BoundaryError(msg) from error
-            found.append(((corner.longitude_deg, corner.latitude_deg), corner.said))
+            found.append(((corner.longitude_deg, corner.latitude_deg), self._words.say(corner.said)))
         if len(found) < FEWEST - 1:
             msg = self._words("{count} corners are typed; a field needs at least three.", count=len(found))
             raise BoundaryError(msg)
@@ -70,7 +70,7 @@ class Typing:
         try:
             corners = self._corners()
         except BoundaryError as error:
-            self._read.show(notice_html([str(error)]))
+            self._read.show(notice_html([self._words.say(str(error))]))
             return
         self._read.show(rows_html((str(number), said) for number, (_, said) in enumerate(corners, start=1)))
 
@@ -81,7 +81,7 @@ class Typing:
             closed = ring if ring[0] == ring[-1] else [*ring, ring[0]]
             checked = checked_field(FieldDraft(name, ((closed,),)), name)
         except BoundaryError as error:
-            self._read.show(notice_html([str(error)]))
+            self._read.show(notice_html([self._words.say(str(error))]))
             return
         self._atelier.offer((checked,), self._words("typed"))
 

@@ -87,7 +87,7 @@ class Preview:
         if len(rings) > 1:
             rows.insert(3, (words("exclusions"), str(len(rings) - 1)))
         self._rows.show(rows_html(rows))
-        self._remarks.show(notice_html(field.remarks))
+        self._remarks.show(notice_html(words.say(one) for one in field.remarks))
 
     def _show_on_map(self) -> None:
         """On the map by itself; while something is driven, as a line over its map."""
