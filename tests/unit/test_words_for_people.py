@@ -28,7 +28,8 @@ UNSEEN = {"row "}
 """The name of a button whose place a row of a table takes."""
 SHOWN_ATTRIBUTES = {"label", "hint", "placeholder"}
 
-LETTERS = re.compile(r"[^\W\d_]{2}")
+LETTERS = re.compile(r"^(?!\.).*[^\W\d_]{2}", re.DOTALL)
+"""Endings of files are for the browser."""
 TWO_WORDS = re.compile(r"[^\W\d_]{2,}[,.:;]? +[^\W\d_]{2,}")
 
 FOR_MACHINES = {
