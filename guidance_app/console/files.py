@@ -37,7 +37,7 @@ class Files:
 
     def __init__(self) -> None:
         self._makers: dict[str, Maker] = {}
-        self._takers: dict[str, Taker] = {}
+        self._takers: dict[str, tuple[Taker, int]] = {}
         self._lock = threading.Lock()
 
     def offer(self, make: Maker, name: str | None = None) -> str:
@@ -51,16 +51,22 @@ class Files:
         """Who makes the file of this token."""
         return self._makers.get(token)
 
-    def awaits(self, take: Taker) -> str:
-        """The token under which a file may come in, until ``forget``."""
+    def awaits(self, take: Taker, largest: int = LARGEST_UPLOAD) -> str:
+        """The token under which a file of at most ``largest`` bytes may come in, until ``forget``."""
         token = secrets.token_urlsafe(12)
         with self._lock:
-            self._takers[token] = take
+            self._takers[token] = (take, largest)
         return token
 
     def taker(self, token: str) -> Taker | None:
         """Who awaits a file under this token."""
-        return self._takers.get(token)
+        awaited = self._takers.get(token)
+        return None if awaited is None else awaited[0]
+
+    def largest(self, token: str) -> int:
+        """So many bytes are taken at most under this token."""
+        awaited = self._takers.get(token)
+        return LARGEST_UPLOAD if awaited is None else awaited[1]
 
     def forget(self, token: str) -> None:
         """Nothing is awaited or offered under this token any more."""

@@ -22,7 +22,7 @@ from starlette.responses import PlainTextResponse, RedirectResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
-from guidance_app.console.files import LARGEST_UPLOAD, LONGEST_NAME, Download, Files, Taker
+from guidance_app.console.files import LONGEST_NAME, Download, Files, Taker
 from guidance_app.console.live import LiveHub
 from guidance_app.console.proxy import pass_through
 from guidance_app.language import Words, message
@@ -139,7 +139,7 @@ def front_app(
         take, words = exchanged.taker(request.path_params["token"]), language()
         if take is None:
             return PlainTextResponse(words("No file is awaited here any more: open the form again."), 404)
-        return await _taken(request, take, words)
+        return await _taken(request, take, exchanged.largest(request.path_params["token"]), words)
 
     async def viser_socket(websocket: WebSocket) -> None:
         await pass_through(websocket, inner_uri, inner_headers)
@@ -172,15 +172,15 @@ def _attached(made: Download) -> Response:
     return Response(made.data, headers=headers, media_type=made.media_type)
 
 
-async def _taken(request: Request, take: Taker, words: Words) -> Response:
+async def _taken(request: Request, take: Taker, largest: int, words: Words) -> Response:
     """The posted file handed to who awaits it; one that is too large is not read to its end."""
     name = unquote(request.headers.get("x-file-name", ""))[:LONGEST_NAME] or "file"
     body = bytearray()
     async for part in request.stream():
         body += part
-        if len(body) > LARGEST_UPLOAD:
+        if len(body) > largest:
             pattern = message("{name} is larger than {most} MB, the most that is taken; nothing was stored.")
-            said = words(pattern, name=name, most=LARGEST_UPLOAD // 2**20)
+            said = words(pattern, name=name, most=largest // 2**20)
             return PlainTextResponse(said, 413, {"Connection": "close"})
     await asyncio.to_thread(take, name, bytes(body))
     return PlainTextResponse("")

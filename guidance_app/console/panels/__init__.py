@@ -12,6 +12,7 @@ from guidance_app.console.panels.receiver import Receiver
 from guidance_app.console.panels.recordings import Recordings
 from guidance_app.console.panels.replay import Replay
 from guidance_app.console.panels.rest import Rest
+from guidance_app.console.panels.settings import Settings
 from guidance_app.console.panels.start import Start
 from guidance_app.console.panels.summary import Summary
 from guidance_app.console.panels.views import Views
@@ -43,5 +44,6 @@ SETUP_PANELS: dict[str, type[Panel]] = {
     "plan": Plan,
     "receiver": Receiver,
     "recordings": Recordings,
+    "settings": Settings,
 }
 """While setting up, in the order of the tabs."""
