@@ -2,7 +2,8 @@
 
 The peers do exactly what ``quantisation_kf`` does (a test compares the numbers), so the ratio of the times is that of
 the programs alone. Our times are of ``Filter.step``, measurement in, pose out, as the console calls it; the peers' are
-of the bare matrices. Times are the best of several runs: what else the machine does only ever makes it slower.
+of the bare matrices. Times are those of the processor, the best of several runs: what else the machine does only ever
+makes them longer.
 """
 
 import argparse
@@ -124,9 +125,9 @@ def tuning_rows(processes: int) -> list[EvaluationRow]:
     objective = straight_objective()
     for _ in random_search(objective, chunks_of(100)):
         """The kernel is compiled before anything is timed."""
-    began = time.perf_counter()
+    began = time.process_time()
     *_, optimum = cma_search(objective)
-    seconds = time.perf_counter() - began
+    seconds = time.process_time() - began
     drawn, drawing = _drawing(objective, processes)
     return [
         EvaluationRow(protocol, "CMA-ES, time to the optimum", "s", seconds, goal=at_most(2.0)),
@@ -197,7 +198,7 @@ def _best(work: Callable[[], object]) -> float:
     work()
     quickest = math.inf
     for _ in range(REPEATS):
-        began = time.perf_counter()
+        began = time.process_time()
         work()
-        quickest = min(quickest, time.perf_counter() - began)
+        quickest = min(quickest, time.process_time() - began)
     return quickest

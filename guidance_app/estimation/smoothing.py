@@ -6,8 +6,9 @@ quarter off the error of the same smoother with fixed noise, and makes its ellip
 cut at gaps over 10 s, and every 20 000 fixes with an overlap, so that its memory stays bounded. The first heading is
 the way of the first metres; if the whole then ran mostly in reverse, it was the other way round.
 
-Fixes that all others contradict are left out. Where several contradict the first sweep, all is linearised about the
-filter for driving instead, at the price of its time: that keeps lively drives at one fix a second from running away.
+Fixes that all others contradict are left out. Where, at about one fix a second, several contradict the first sweep,
+all is linearised about the filter for driving instead, at the price of its time: that keeps lively drives from running
+away.
 """
 
 import math
@@ -62,6 +63,8 @@ GIVE = 1.0
 FARTHEST = np.array([2.0, 2.0, 0.3, 2.0, 0.1, 1.0, 1.0, 2.0, 2.0])
 """How far a sweep moves, at most, the states about which the next one is linearised."""
 NOWHERE = np.zeros((0, STATES))
+OFTEN = 0.4
+"""At fixes no farther apart than this many seconds no sweep runs away, and the filter's time is saved."""
 SHARP = (2.0, 0.3, 2.0)
 """Acceleration noise, curvature and memory where the fixes contradict the motion model: the tractor did more there."""
 
@@ -133,7 +136,7 @@ def _swept(
     lead astray. Then every sweep is linearised about the one before, and the first about the filter for driving.
     """
     first = _sweep(piece[0], departure, epochs, _Sweeping.of(epochs))
-    if first.sharp.any():
+    if first.sharp.any() and float(np.median(np.diff(epochs.t))) > OFTEN:
         about, believed = _filtered(piece, departure, epochs, settings)
         first = _sweep(piece[0], departure, epochs, replace(_Sweeping.of(epochs), about=about, believed=believed))
     now = first
