@@ -14,11 +14,9 @@ from guidance_app.commands.options import (
 from guidance_app.commands.serving import serve
 from guidance_app.runtime import ReplaySession
 from guidance_app.sources.file import load_log
-from guidance_app.store import SAMPLE_RECORDING, Store, copy_sample, load_job
+from guidance_app.store import SAMPLE_OPERATION, SAMPLE_RECORDING, Store, copy_sample, load_job
 
 __all__ = ["add_parser", "run"]
-
-SAMPLE_OPERATION = "Round trip"
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:

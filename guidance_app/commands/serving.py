@@ -9,10 +9,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from guidance_app.console.server import Console
-from guidance_app.runtime import Session, SessionManager
+from guidance_app.runtime import Session, SessionManager, Warming
 from guidance_app.store import Store
 
 __all__ = ["serve"]
+
+PATIENCE_S = 2.0
+"""A wait that is longer is explained."""
 
 
 def serve(session: Session | None, arguments: argparse.Namespace, data: Path, opening: str) -> int:
@@ -26,6 +29,7 @@ def serve(session: Session | None, arguments: argparse.Namespace, data: Path, op
     print(f"data folder: {data}")
     console.start()
     try:
+        _warm_up(wait=session is not None)
         manager.start()
         print(console.invitation(colour=sys.stdout.isatty()))
         print("Stop it with Ctrl-C.", flush=True)
@@ -35,6 +39,15 @@ def serve(session: Session | None, arguments: argparse.Namespace, data: Path, op
         console.close()
         manager.close()
     return 0
+
+
+def _warm_up(*, wait: bool) -> None:
+    """Compiles what a drive needs before it begins; with nothing to drive yet, beside the setup."""
+    warming = Warming()
+    warming.start()
+    if wait and not warming.done(PATIENCE_S):
+        print("compiling the filters: only the first start takes this long ...", flush=True)
+        warming.done()
 
 
 @contextlib.contextmanager

@@ -9,6 +9,7 @@ from guidance_app.runtime.recorder import Recorder, new_recording
 from guidance_app.runtime.replay import ReplayControl, ReplaySession, ReplayState
 from guidance_app.runtime.session import Session
 from guidance_app.runtime.tap import RawStream, Tap
+from guidance_app.runtime.warming import Warming
 
 __all__ = [
     "Comparison",
@@ -21,6 +22,7 @@ __all__ = [
     "Session",
     "SessionManager",
     "Tap",
+    "Warming",
     "cache_folder",
     "new_recording",
     "recorded_session",

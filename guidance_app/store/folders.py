@@ -10,12 +10,14 @@ from platformdirs import user_data_dir
 from guidance_app.language import sentence
 from guidance_app.store.files import StoreError, read_bounded, why
 
-__all__ = ["SAMPLE_RECORDING", "copy_sample", "data_folder", "sample_folder", "simulated_notice"]
+__all__ = ["SAMPLE_OPERATION", "SAMPLE_RECORDING", "copy_sample", "data_folder", "sample_folder", "simulated_notice"]
 
 PACKAGE = Path(__file__).resolve().parent.parent
 ENVIRONMENT_NAME = "GUIDANCE_DATA"
 SAMPLE_RECORDING = Path("recordings") / "sample"
 """The embedded recording's folder inside a data folder."""
+SAMPLE_OPERATION = "Round trip"
+"""The name of the operation that the embedded recording drives."""
 SESSION_NAME = "session.json"
 """What is known of a recording, beside its log."""
 _SAMPLE = (

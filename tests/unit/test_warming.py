@@ -1,0 +1,14 @@
+"""What is compiled before a drive begins."""
+
+import pytest
+
+from guidance_app.estimation.filters import FILTERS
+from guidance_app.runtime import Warming
+
+
+def test_every_filter_is_warmed_up_without_a_complaint(caplog: pytest.LogCaptureFixture) -> None:
+    for name in FILTERS:
+        warming = Warming(name)
+        warming.start()
+        assert warming.done()
+    assert caplog.records == []
