@@ -10,7 +10,8 @@ import shapely
 
 from guidance_app.documents import FieldDocument, Geometry, Implement, Job, Operation, Receiver, Tractor
 from guidance_app.geodesy import FieldFrame
-from guidance_app.guidance.planning import plan_operation, request_from_documents
+from guidance_app.guidance.planning import plan_operation
+from guidance_app.guidance.wishes import request_from_documents
 from guidance_app.model import Chunk, FixQuality, FloatArray
 from guidance_app.simulation.receiver import Antenna, ReceiverSettings, SimulatedReceiver
 

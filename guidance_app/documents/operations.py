@@ -3,7 +3,7 @@
 from enum import StrEnum
 from typing import Literal
 
-from pydantic import Field
+from pydantic import Field, JsonValue
 
 from guidance_app.documents.base import Document, Name, choice, quantity
 from guidance_app.language import message
@@ -28,6 +28,10 @@ class Direction(StrEnum):
     LONGEST_EDGE = "longest-edge"
     TYPED = "typed"
     LINE = "line"
+
+
+_WITH_PASSES: list[JsonValue] = [str(Method.ROUND_TRIP), str(Method.TRANSFER), str(Method.INTERMEDIATE_DIVISION)]
+_PLANNED: list[JsonValue] = [*_WITH_PASSES, str(Method.SURROUNDING)]
 
 
 class Operation(Document):
@@ -63,6 +67,24 @@ class Operation(Document):
     direction_deg: float = quantity(
         "Heading", "deg", 0, 360, 0.0, step=0.1, help="Clockwise from north", when=("direction", "typed")
     )
+    guidance_line: str = Field(
+        "",
+        title="Guidance line",
+        max_length=120,
+        description="Its name; empty: the field's first AB or A+ line",
+        json_schema_extra={"when": ["direction", "line"]},
+    )
+    last_pass: Literal["overlap", "even", "gap"] = choice(
+        "Last pass",
+        "overlap",
+        {
+            "overlap": message("Overlaps"),
+            "even": message("All a little closer"),
+            "gap": message("Left out when narrow"),
+        },
+        help="What becomes of a rest that is narrower than a pass",
+        when=("method", _WITH_PASSES),
+    )
     laps: int | None = Field(None, title="Headland laps", ge=0, le=20, description="Empty: as many as a turn needs")
     turning_space: float | None = Field(
         None,
@@ -85,6 +107,15 @@ class Operation(Document):
         },
     )
     laps_first: bool = Field(default=False, title="Drive the headland first")
+    laps_clockwise: bool = Field(
+        default=True, title="Headland laps clockwise", json_schema_extra={"when": ["method", _PLANNED]}
+    )
+    end_at_entrance: bool = Field(
+        default=False, title="End near the entrance", json_schema_extra={"when": ["method", _WITH_PASSES]}
+    )
+    over_exclusions: bool = Field(
+        default=False, title="Drive and work over the exclusions", json_schema_extra={"when": ["method", _PLANNED]}
+    )
     reverse_allowed: bool = Field(default=True, title="The tractor may back up in a turn")
     options: dict[str, float | int | str | bool] = Field(default_factory=dict, title="Options of the method")
     product: str = Field("", title="Product", max_length=200)

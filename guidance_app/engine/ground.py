@@ -6,13 +6,14 @@ import numpy as np
 import shapely
 
 from guidance_app.boundary import frame_of, polygon_in
-from guidance_app.documents import FieldDocument, Job, Method
+from guidance_app.documents import Job, Method
 from guidance_app.geodesy import FieldFrame
 from guidance_app.guidance.family import ParallelLines, PassFamily
 from guidance_app.guidance.itinerary import passes_of
-from guidance_app.guidance.planning import PlanError, plan_operation, request_from_documents
+from guidance_app.guidance.planning import PlanError, plan_operation
 from guidance_app.guidance.replanning import Standing, replan
 from guidance_app.guidance.request import PlanRequest
+from guidance_app.guidance.wishes import request_of
 from guidance_app.language import sentence
 from guidance_app.model import FloatArray, Pass, Plan
 
@@ -52,7 +53,7 @@ def ground_of(job: Job) -> Ground | None:
     if job.operation is not None and job.operation.method is Method.LINE:
         return Ground(frame, polygon, rings)
     try:
-        request = request_from_documents(job.tractor, job.implement, job.operation, _entrance(frame, job.field))
+        request = request_of(job)
         plan = plan_operation(polygon, request)
     except PlanError as error:
         return Ground(
@@ -97,13 +98,6 @@ def mainland_of(plan: Plan | None) -> shapely.MultiPolygon | None:
     if plan is None or not plan.mainland:
         return None
     return shapely.MultiPolygon([shapely.Polygon(part[0], part[1:]) for part in plan.mainland])
-
-
-def _entrance(frame: FieldFrame, field: FieldDocument) -> tuple[float, float] | None:
-    if field.entrance is None:
-        return None
-    longitude, latitude = field.entrance
-    return frame.east_north_from_degrees(latitude, longitude)
 
 
 def _read_only(points: FloatArray) -> FloatArray:

@@ -32,7 +32,8 @@ def ground_of(polygon: Polygon, request: PlanRequest) -> Polygon:
     if not (np.isfinite(corners).all() and np.abs(corners).max() < WIDEST):
         msg = sentence("the field's boundary has a corner that is not a place in the field")
         raise PlanError(msg)
-    holes = [ring for place, ring in enumerate(polygon.interiors) if place not in request.passable]
+    over = range(len(polygon.interiors)) if request.over_exclusions else request.passable
+    holes = [ring for place, ring in enumerate(polygon.interiors) if place not in over]
     ground = _largest(Polygon(polygon.exterior, holes))
     smooth = shapely.simplify(ground, VERTEX_TOLERANCE)
     return shapely.orient_polygons(smooth if smooth.is_valid else ground)

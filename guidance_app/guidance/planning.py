@@ -17,7 +17,7 @@ from guidance_app.guidance.joining import Joiner
 from guidance_app.guidance.layout import Layout, layout_of
 from guidance_app.guidance.pattern import OperationMethod, PatternOptions
 from guidance_app.guidance.patterns import METHODS
-from guidance_app.guidance.request import PlanError, PlanRequest, request_from_documents
+from guidance_app.guidance.request import PlanError, PlanRequest
 from guidance_app.guidance.room import Room
 from guidance_app.guidance.route import route
 from guidance_app.guidance.task import Task
@@ -34,7 +34,6 @@ __all__ = [
     "groundwork_of",
     "plan_on",
     "plan_operation",
-    "request_from_documents",
 ]
 
 ROUNDS = 4

@@ -10,12 +10,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Literal
 
-from guidance_app.documents import Direction, HitchKind, Implement, Method, Operation, Tractor
+from guidance_app.documents import Direction, Method
 from guidance_app.language import message, sentence
 
-__all__ = ["Body", "LastPass", "PlanError", "PlanRequest", "StartCorner", "request_from_documents"]
+__all__ = ["Body", "LastPass", "PlanError", "PlanRequest", "StartCorner"]
 
 FRONT_OVERHANG = 0.8
 """Metres of bonnet or weights ahead of the front axle."""
@@ -63,7 +63,7 @@ class PlanRequest:
 
     ``line`` is an AB line whose offset is kept, ``edge_near`` a point near the edge to follow. ``laps`` goes before
     ``turning_space``; with neither the headland is as deep as a turn needs. ``passable`` names holes, from 0, that may
-    be driven and worked over.
+    be driven and worked over; ``over_exclusions`` says so of all.
     """
 
     width: float
@@ -93,6 +93,7 @@ class PlanRequest:
     leftovers: bool = True
     last_pass: LastPass = LastPass.OVERLAP
     passable: frozenset[int] = frozenset()
+    over_exclusions: bool = False
     work_speed: float = 2.2
     turn_speed: float = 1.4
     stop_s: float = 3.0
@@ -209,48 +210,3 @@ PARTS: Mapping[str, str] = {
 def _named(name: str) -> str:
     """What a person calls a number of the request."""
     return sentence(PARTS[name])
-
-
-def request_from_documents(
-    tractor: Tractor,
-    implement: Implement,
-    operation: Operation | None = None,
-    start: tuple[float, float] | None = None,
-) -> PlanRequest:
-    """The request of a saved operation; without one, round trip along the longest edge. Raises ``PlanError``.
-
-    A trailed implement is not backed up: the tractor then turns forwards only.
-    """
-    chosen = {} if operation is None else _chosen(operation)
-    reverse_allowed = chosen.pop("reverse_allowed", True) and implement.hitch is HitchKind.MOUNTED
-    behind = implement.offset_back
-    if implement.hitch is HitchKind.TRAILED:
-        behind = implement.hitch_back + implement.drawbar
-    return PlanRequest(
-        width=implement.working_width,
-        overlap=implement.overlap,
-        radius=tractor.turning_radius,
-        offset_back=behind,
-        offset_right=implement.offset_right,
-        length=implement.length,
-        wheelbase=tractor.wheelbase,
-        track_width=tractor.track_width,
-        start=start,
-        reverse_allowed=reverse_allowed,
-        **chosen,
-    )
-
-
-def _chosen(operation: Operation) -> dict[str, Any]:
-    typed = operation.direction is Direction.TYPED
-    return {
-        "method": operation.method,
-        "options": MappingProxyType(dict(operation.options)),
-        "laps": operation.laps,
-        "turning_space": operation.turning_space,
-        "direction": operation.direction,
-        "heading": math.radians(operation.direction_deg) if typed else None,
-        "start_corner": operation.start_corner,
-        "laps_first": operation.laps_first,
-        "reverse_allowed": operation.reverse_allowed,
-    }

@@ -16,10 +16,11 @@ from guidance_app.angles import heading_between, yaw_from_heading
 from guidance_app.boundary import frame_of, polygon_in
 from guidance_app.documents import Job
 from guidance_app.geodesy import FieldFrame
-from guidance_app.guidance.planning import plan_operation, request_from_documents
+from guidance_app.guidance.planning import plan_operation
 from guidance_app.guidance.room import Room
 from guidance_app.guidance.turn import Leg
 from guidance_app.guidance.turns import Turner
+from guidance_app.guidance.wishes import request_of
 from guidance_app.language import sentence
 from guidance_app.model import Chunk, FloatArray, Segment, SegmentKind, SourceUp
 from guidance_app.simulation.driver import DriverSettings
@@ -131,9 +132,7 @@ def sample_drive(job: Job) -> SampleDrive:
         raise SourceError(msg)
     frame = frame_of(job.field.boundary)
     polygon = polygon_in(frame, job.field.boundary)
-    longitude, latitude = job.field.entrance
-    start = frame.east_north_from_degrees(latitude, longitude)
-    request = request_from_documents(job.tractor, job.implement, job.operation, start)
+    request = request_of(job)
     segments = plan_operation(polygon, request).segments
     places = [place for place, segment in enumerate(segments) if segment.kind is SegmentKind.PASS]
     passes = segments[places[0] : places[-1] + 1]

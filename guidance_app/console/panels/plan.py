@@ -16,8 +16,8 @@ from guidance_app.console.plan_strokes import draw_plan
 from guidance_app.console.plan_table import RowButtons, table_html
 from guidance_app.console.widgets import Shown, notice_html
 from guidance_app.documents import Job, Operation
-from guidance_app.guidance.planning import request_from_documents
 from guidance_app.guidance.preview import PreviewRow, preview
+from guidance_app.guidance.wishes import request_of
 from guidance_app.language import message
 from guidance_app.model import Segment
 from guidance_app.store import Stored, load_job
@@ -94,13 +94,8 @@ class Plan:
             job = self._job(stored)
             assert job.field is not None
             self._hands.house.show_field(job.field)
-            frame = frame_of(job.field.boundary)
-            entrance = None
-            if job.field.entrance is not None:
-                longitude, latitude = job.field.entrance
-                entrance = frame.east_north_from_degrees(latitude, longitude)
-            request = request_from_documents(job.tractor, job.implement, stored.document, entrance)
-            for row in preview(polygon_in(frame, job.field.boundary), request):
+            polygon = polygon_in(frame_of(job.field.boundary), job.field.boundary)
+            for row in preview(polygon, request_of(job)):
                 if stop.is_set():
                     return
                 self._rows = (*self._rows, row)

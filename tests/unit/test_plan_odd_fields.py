@@ -1,0 +1,109 @@
+"""Whatever field and machine are given, there is a plan inside the field or one sentence, never a crash."""
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from guidance_app.bench.plan_searches import ODD_FIELDS
+from guidance_app.documents import Direction, Method
+from guidance_app.guidance.planning import PlanError, PlanRequest, plan_operation
+from guidance_app.model import Plan, SegmentKind
+
+CENTIMETRE = 0.01
+
+
+def outcome(polygon: shapely.Polygon, request: PlanRequest) -> tuple[Plan | None, str]:
+    try:
+        return plan_operation(polygon, request), ""
+    except PlanError as error:
+        return None, str(error)
+
+
+def planned(polygon: shapely.Polygon, request: PlanRequest) -> Plan | None:
+    """The plan, checked; None where a sentence says why there is none."""
+    plan, sentence = outcome(polygon, request)
+    if plan is None:
+        assert len(sentence) > 10
+        assert "\n" not in sentence
+        return None
+    room = shapely.make_valid(polygon).buffer(CENTIMETRE)
+    for each in plan.segments:
+        assert np.isfinite(each.points).all()
+        assert len(each.points) >= 2
+        assert not each.fits or shapely.contains_xy(room, *each.points.T).all()
+        assert each.fits is (each.missing == 0)
+    numbers = [each.number for each in plan.segments if each.implement_down]
+    assert len(numbers) == len(set(numbers))
+    return plan
+
+
+@pytest.mark.parametrize("name", ODD_FIELDS)
+def test_an_odd_field_gets_a_plan_or_a_sentence(name: str) -> None:
+    planned(*ODD_FIELDS[name])
+
+
+def test_a_turning_space_that_leaves_nothing_gives_laps_and_says_so() -> None:
+    plan = planned(shapely.box(0, 0, 90, 70), PlanRequest(width=6.0, turning_space=60.0))
+    assert plan is not None
+    assert "laps" in plan.warnings[0]
+    assert sum(each.length for each in plan.segments if each.kind is SegmentKind.LAP) > 0.8 * plan.costs.work_m
+
+
+def test_a_start_outside_is_said_and_planned() -> None:
+    plan = planned(shapely.box(0, 0, 90, 70), PlanRequest(width=6.0, start=(-80.0, 30.0)))
+    assert plan is not None
+    assert any("outside" in warning for warning in plan.warnings)
+
+
+@pytest.mark.parametrize(
+    ("polygon", "words"),
+    [
+        (shapely.Polygon(), "no boundary"),
+        (shapely.Polygon([(0, 0), (1e9, 0), (1e9, 1e9)]), "not a place"),
+        (shapely.box(0, 0, 2, 2), "too small"),
+        (shapely.Polygon([(0, 0), (100, 100), (100, 0), (0, 100)]), "parts"),
+    ],
+)
+def test_what_is_no_field_is_refused_in_a_sentence(polygon: shapely.Polygon, words: str) -> None:
+    with pytest.raises(PlanError, match=words):
+        plan_operation(polygon, PlanRequest(width=6.0))
+
+
+@st.composite
+def stars(draw: st.DrawFn) -> shapely.Polygon:
+    """Fields of any shape round a middle, some with a hole, some with points again and again."""
+    count = draw(st.integers(3, 14))
+    radii = draw(st.lists(st.floats(4, 70), min_size=count, max_size=count))
+    angles = np.linspace(0, 2 * np.pi, count, endpoint=False)
+    points = [(radius * math.cos(angle), radius * math.sin(angle)) for radius, angle in zip(radii, angles, strict=True)]
+    if draw(st.booleans()):
+        points = [point for point in points for _ in range(2)]
+    polygon = shapely.Polygon(points)
+    hole = draw(st.none() | st.floats(1, 20))
+    if hole is None:
+        return polygon
+    place = draw(st.tuples(st.floats(-35, 35), st.floats(-35, 35)))
+    cut = polygon.difference(shapely.Point(place).buffer(hole, quad_segs=3))
+    return cut if isinstance(cut, shapely.Polygon) else polygon
+
+
+@settings(max_examples=12, deadline=None)
+@given(
+    stars(),
+    st.sampled_from([3.0, 6.0, 12.0, 30.0]),
+    st.sampled_from([2.0, 5.0, 9.0]),
+    st.sampled_from([method for method in Method if method is not Method.LINE]),
+    st.sampled_from([Direction.BEST, Direction.LONGEST_EDGE]),
+    st.booleans(),
+)
+def test_any_field_and_any_machine(
+    polygon: shapely.Polygon, width: float, radius: float, method: Method, direction: Direction, reverse: bool
+) -> None:
+    request = PlanRequest(
+        width=width, radius=radius, method=method, direction=direction, reverse_allowed=reverse, offset_right=0.4
+    )
+    planned(polygon, request)

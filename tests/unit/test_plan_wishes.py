@@ -1,0 +1,193 @@
+"""What an operation asks for is what the plan does: line, last pass, way round, exit, exclusions, one by one."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+
+from guidance_app.boundary import frame_of, polygon_in
+from guidance_app.documents import (
+    Direction,
+    FieldDocument,
+    Geometry,
+    GuidanceLineDocument,
+    HitchKind,
+    Implement,
+    Job,
+    LineGeometry,
+    Operation,
+    Receiver,
+    Tractor,
+)
+from guidance_app.geodesy import FieldFrame
+from guidance_app.guidance.planning import PlanError, PlanRequest, plan_operation
+from guidance_app.guidance.request import LastPass
+from guidance_app.guidance.wishes import request_of
+from guidance_app.model import FloatArray, Plan, Segment, SegmentKind
+
+MILLIMETRE = 1e-3
+CENTIMETRE = 0.01
+FRAME = FieldFrame(47.5, 8.5)
+CORNERS = np.array([[-100.0, -60.0], [100.0, -60.0], [100.0, 65.0], [-100.0, 65.0], [-100.0, -60.0]])
+POND = np.array([[-10.0, -5.0], [-10.0, 15.0], [12.0, 15.0], [12.0, -5.0], [-10.0, -5.0]])
+LINE = np.array([[-50.0, -31.7], [61.0, -12.4]])
+
+
+def degrees(points: FloatArray) -> list[tuple[float, float]]:
+    found = [(float(lon), float(lat)) for lon, lat in FRAME.lonlat_from_array(points)]
+    return [*found[:-1], found[0]] if np.array_equal(points[0], points[-1]) else found
+
+
+def a_job(**wishes: Any) -> Job:
+    field = FieldDocument(
+        name="F",
+        boundary=Geometry(coordinates=[degrees(CORNERS), degrees(POND)]),
+        entrance=degrees(CORNERS[:1] + 1.0)[0],
+        lines=[
+            GuidanceLineDocument(name="curved", type="curve", geometry=LineGeometry(coordinates=degrees(LINE))),
+            GuidanceLineDocument(name="fence", type="ab", geometry=LineGeometry(coordinates=degrees(LINE))),
+        ],
+    )
+    hitch = wishes.pop("hitch", HitchKind.MOUNTED)
+    return Job(
+        tractor=Tractor(name="T"),
+        implement=Implement(name="I", working_width=9.0, hitch=hitch),
+        receiver=Receiver(name="R"),
+        field=field,
+        operation=Operation(name="O", field="F", tractor="T", implement="I", **wishes),
+    )
+
+
+def plan_of(job: Job) -> tuple[Plan, shapely.Polygon]:
+    assert job.field is not None
+    polygon = polygon_in(frame_of(job.field.boundary), job.field.boundary)
+    return plan_operation(polygon, request_of(job)), polygon
+
+
+def passes(plan: Plan) -> list[Segment]:
+    return [each for each in plan.segments if each.kind is SegmentKind.PASS]
+
+
+@pytest.mark.parametrize("name", ["", "fence"])
+def test_passes_beside_a_guidance_line_keep_its_distance_to_a_millimetre(name: str) -> None:
+    job = a_job(direction=Direction.LINE, guidance_line=name)
+    plan, _ = plan_of(job)
+    assert job.field is not None
+    frame = frame_of(job.field.boundary)
+    first, last = (
+        np.array(frame.east_north_from_degrees(latitude, longitude))
+        for longitude, latitude in job.field.lines[1].geometry.coordinates
+    )
+    along = (last - first) / np.hypot(*(last - first))
+    for each in passes(plan):
+        across = (each.points - first) @ np.array([along[1], -along[0]])
+        turned = abs(float(np.diff(across)[0]))
+        if turned > CENTIMETRE:
+            continue  # a leftover has its own direction
+        spacings = across.mean() / plan.spacing
+        assert abs(spacings - round(spacings)) * plan.spacing < MILLIMETRE
+    beside = [abs(float(np.diff((each.points - first) @ np.array([along[1], -along[0]]))[0])) for each in passes(plan)]
+    assert sum(one < CENTIMETRE for one in beside) >= 8
+
+
+def test_a_guidance_line_that_is_not_there_is_named() -> None:
+    with pytest.raises(PlanError, match="'F' has no guidance line 'hedge'"):
+        request_of(a_job(direction=Direction.LINE, guidance_line="hedge"))
+
+
+def test_exclusions_are_driven_round_or_over() -> None:
+    around, polygon = plan_of(a_job())
+    over, _ = plan_of(a_job(over_exclusions=True))
+    pond = shapely.Polygon(polygon.interiors[0]).buffer(-CENTIMETRE)
+    assert not any(shapely.LineString(each.points).intersects(pond) for each in around.segments if each.fits)
+    assert any(shapely.LineString(each.points).intersects(pond) for each in passes(over))
+
+
+def clockwise(lap: Segment) -> bool:
+    return not shapely.is_ccw(shapely.linearrings(lap.points))
+
+
+@pytest.mark.parametrize("wish", [True, False])
+def test_laps_go_the_way_round_that_is_wished(wish: bool) -> None:
+    request = PlanRequest(width=9.0, square_corners=False, laps_clockwise=wish)
+    plan = plan_operation(shapely.box(0, 0, 200, 120), request)
+    laps = [each for each in plan.segments if each.closed]
+    assert laps
+    assert all(clockwise(each) is wish for each in laps)
+    assert request_of(a_job(laps_clockwise=wish)).laps_clockwise is wish
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_laps_come_first_or_last(first: bool) -> None:
+    plan, _ = plan_of(a_job(laps_first=first))
+    kinds = [each.kind for each in plan.segments if each.implement_down]
+    assert kinds == sorted(kinds, key=lambda kind: (kind is SegmentKind.PASS) is first)
+
+
+def test_the_last_pass_overlaps_is_left_out_or_all_are_closer() -> None:
+    field = shapely.box(0, 0, 150, 120)
+    made = {
+        last: plan_operation(field, PlanRequest(width=9.0, laps=2, last_pass=last, leftovers=False))
+        for last in LastPass
+    }
+    inner = 120 - 4 * 9.0
+    assert len(passes(made[LastPass.OVERLAP])) == len(passes(made[LastPass.EVEN])) == math.ceil(inner / 9.0)
+    assert len(passes(made[LastPass.GAP])) == math.floor(inner / 9.0)
+    assert made[LastPass.OVERLAP].spacing == 9.0
+    assert made[LastPass.EVEN].spacing == pytest.approx(inner / math.ceil(inner / 9.0))
+    assert made[LastPass.GAP].costs.missed_m2 > made[LastPass.EVEN].costs.missed_m2
+    assert request_of(a_job(last_pass="even")).last_pass is LastPass.EVEN
+
+
+def test_a_plan_ends_where_the_driver_leaves() -> None:
+    field = shapely.box(0, 0, 190, 120)
+    ends = []
+    for way_out in ((0.0, 0.0), (190.0, 120.0)):
+        plan = plan_operation(field, PlanRequest(width=9.0, laps_first=True, exit=way_out, start_corner="nearest"))
+        ends.append(math.dist(passes(plan)[-1].points[-1], way_out))
+    assert max(ends) < 40.0
+    assert request_of(a_job(end_at_entrance=True)).exit == request_of(a_job()).start
+    assert request_of(a_job()).exit is None
+
+
+@pytest.mark.parametrize("corner", ["first-left", "first-right", "last-left", "last-right"])
+def test_work_begins_at_the_corner_that_is_wished(corner: str) -> None:
+    request = PlanRequest(width=9.0, direction=Direction.TYPED, heading=0.0, start_corner=corner)  # type: ignore[arg-type]  # one of the literals
+    first = passes(plan_operation(shapely.box(0, 0, 190, 120), request))[0]
+    assert bool(first.points[0, 0] > 95) is corner.startswith("last")
+    assert bool(first.points[0, 1] > 60) is corner.endswith("left")
+
+
+def test_the_edge_that_is_tapped_gives_the_direction() -> None:
+    field = shapely.Polygon([(0, 0), (200, 0), (200, 90), (0, 140)])
+    plan = plan_operation(field, PlanRequest(width=9.0, edge_near=(100.0, 118.0)))
+    wanted = math.atan2(200, -50)
+    assert abs(math.sin(plan.direction - wanted)) < 1e-6
+
+
+def test_a_trailed_implement_is_never_backed_up() -> None:
+    plan, _ = plan_of(a_job(hitch=HitchKind.TRAILED))
+    assert not any(each.reverse for each in plan.segments if each.fits)
+
+
+def tight(plan: Plan, radius: float) -> float:
+    worst = 0.0
+    for each in plan.segments:
+        points = np.vstack([each.points, each.points[:2]]) if each.closed else each.points
+        steps = np.diff(points, axis=0)
+        lengths = np.hypot(*steps.T)
+        turn = np.abs((np.diff(np.arctan2(steps[:, 1], steps[:, 0])) + np.pi) % (2 * np.pi) - np.pi)
+        chord = (lengths[1:] + lengths[:-1]) / 2
+        worst = max(worst, float(radius * (turn / chord).max(initial=0.0)))
+    return worst
+
+
+@pytest.mark.parametrize("change", [{}, {"square_corners": False}, {"reverse_allowed": False}])
+def test_nothing_that_fits_bends_tighter_than_the_turning_circle(change: Mapping[str, Any]) -> None:
+    field = shapely.Polygon([(0, 0), (200, 0), (230, 90), (120, 150), (0, 130)])
+    plan = plan_operation(field, PlanRequest(width=9.0, **change))
+    assert all(each.fits for each in plan.segments)
+    assert tight(plan, 5.0) <= 1.02
