@@ -9,13 +9,14 @@ import viser
 
 from guidance_app.console.house import House
 from guidance_app.console.sketch import Sketch
+from guidance_app.console.wheel import WheelView
 from guidance_app.documents import Units
 from guidance_app.language import Words
 from guidance_app.model import Command, Snapshot
 from guidance_app.runtime import ReplayControl, ReplayState
 from guidance_app.view.camera import ViewMode
 
-__all__ = ["Desk", "Hands", "Panel", "Place"]
+__all__ = ["Desk", "Hands", "Panel", "Place", "WheelHands"]
 
 
 class Place(StrEnum):
@@ -35,6 +36,17 @@ class Desk:
     mode: ViewMode
     night: bool
     replay: ReplayState | None
+
+
+@dataclass(frozen=True, slots=True)
+class WheelHands:
+    """The wheel as one browser has it. ``mine`` says whether it may operate now, and tells the person if not."""
+
+    view: Callable[[], WheelView]
+    mine: Callable[[], bool]
+    ask: Callable[[], None]
+    give: Callable[[], None]
+    keep: Callable[[], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +74,8 @@ class Hands:
     go: Callable[[Place], None]
     renew: Callable[[], None]
     soon: Callable[[], None]
+    wheel: WheelHands
+    """``post`` of a browser without the wheel does nothing and says so; what begins or ends a drive asks ``mine``."""
 
 
 class Panel(Protocol):

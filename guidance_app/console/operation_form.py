@@ -262,7 +262,7 @@ class OperationForm:
         """Plans as a drive would, from the documents as they are stored and the form as it is."""
         operation = self.read()
         store = self._hands.house.store
-        if operation is None or store is None:
+        if operation is None or store is None or not self._hands.wheel.mine():
             return
         if self._hands.house.driving:
             self._said = self._words("Something is driven now: a plan can be looked at when the drive has ended.")

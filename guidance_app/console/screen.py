@@ -9,18 +9,20 @@ client is drawn, the others are drawn on.
 import logging
 import threading
 import time
+from collections.abc import Callable
 
 import viser
 
 from guidance_app.console.clock import shown_instant
-from guidance_app.console.desk import Desk, Hands, Panel, Place
+from guidance_app.console.desk import Desk, Hands, Panel, Place, WheelHands
 from guidance_app.console.ground import WORLD, Ground
 from guidance_app.console.house import House
 from guidance_app.console.moving import ClientScene, Models
 from guidance_app.console.panels import HEAD, PANELS, SETUP_PANELS
 from guidance_app.console.sketch import Sketch
+from guidance_app.console.wheel import Helm
 from guidance_app.language import Words, words_for
-from guidance_app.model import Snapshot
+from guidance_app.model import Command, Snapshot
 from guidance_app.view.camera import ViewMode
 from guidance_app.view.colours import palette_of
 
@@ -86,6 +88,7 @@ class Screen:
         self._ground = Ground(server, self._job, palette_of(night=self._night))
         self._clients: dict[int, _Client] = {}
         self._arrived: list[viser.ClientHandle] = []
+        self._helm = Helm(time.monotonic)
         self._lock = threading.Lock()
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name="screen", daemon=True)
@@ -128,7 +131,12 @@ class Screen:
     def _leave(self, handle: viser.ClientHandle) -> None:
         with self._lock:
             self._arrived = [one for one in self._arrived if one is not handle]
-        self._clients.pop(handle.client_id, None)
+        self._forget(handle.client_id)
+
+    def _forget(self, number: int) -> None:
+        """A browser has gone; the drive goes on as it was."""
+        self._clients.pop(number, None)
+        self._helm.left(number)
 
     # --- the loop --------------------------------------------------------------------------------------------------
 
@@ -163,7 +171,7 @@ class Screen:
         """
         number = client.handle.client_id
         if number not in self._server.get_clients():
-            self._clients.pop(number, None)
+            self._forget(number)
         elif not client.failed:
             log.error("client %d could not be drawn; the next redraw tries again", number, exc_info=error)
         client.failed = True
@@ -202,6 +210,7 @@ class Screen:
                 scene = ClientScene(handle, self._job, self._models, palette_of(night=self._night))
                 place = Place.SETUP if self._session.idle else Place.DRIVE
                 self._clients[handle.client_id] = _Client(handle, scene, place)
+                self._helm.came(handle.client_id)
             except Exception:
                 if handle.client_id in self._server.get_clients():
                     log.exception("client %d could not be welcomed", handle.client_id)
@@ -261,8 +270,14 @@ class Screen:
             client.handle.add_notification(title, body, auto_close_seconds=seconds, color="red" if bad else "green")
 
         words = words_for(self._house.settings().language)
+        wheel = self._wheel_hands(client, words, tell)
+
+        def post(command: Command) -> None:
+            if wheel.mine():
+                self._session.post(command)
+
         return Hands(
-            post=self._session.post,
+            post=post,
             look=look,
             bring_back=bring_back,
             set_night=self._wish_night,
@@ -276,6 +291,24 @@ class Screen:
             go=go,
             renew=self._renew,
             soon=soon,
+            wheel=wheel,
+        )
+
+    def _wheel_hands(self, client: _Client, words: Words, tell: Callable[..., None]) -> WheelHands:
+        helm, number = self._helm, client.handle.client_id
+
+        def mine() -> bool:
+            if helm.has(number):
+                return True
+            tell(words("Not done"), words("Another tablet has the wheel: ask for it above."), bad=True)
+            return False
+
+        return WheelHands(
+            view=lambda: helm.view(number),
+            mine=mine,
+            ask=lambda: helm.ask(number),
+            give=lambda: helm.give(number),
+            keep=lambda: helm.keep(number),
         )
 
     def _renew(self) -> None:

@@ -98,8 +98,9 @@ def test_no_button_is_left_without_a_test(stage: Stage) -> None:
     of_position = HIDDEN | {"2", "I stand on this point", "Measure on this point, 10 s"}
     elsewhere = {"Driver", "Heading up", "North up", "Whole field", "Bring back", "Day", "Night", "Look ahead"}
     of_menu = {"Fields, machines, recordings", "End the drive", "No, drive on"}
+    of_wheel = {"Ask for the wheel", "Give it", "Keep it"}
     of_receiver = {"Show what it sends", "Look again", "Use this receiver", "No, keep this one"}
-    known = {words for words, _ in COMMANDS} | elsewhere | of_menu | of_receiver | of_position | of_rest
+    known = {words for words, _ in COMMANDS} | elsewhere | of_menu | of_wheel | of_receiver | of_position | of_rest
     with stage.client() as client:
         stage.tick_until(client, lambda: client.control("Working · press to lift"))
         for control in client.controls.values():

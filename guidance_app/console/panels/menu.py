@@ -45,6 +45,8 @@ class Menu:
         self._sure = not self._sure
 
     def _leave(self) -> None:
+        if not self._hands.wheel.mine():
+            return
         self._hands.house.end()
         self._hands.go(Place.SETUP)
 

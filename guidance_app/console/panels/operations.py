@@ -73,6 +73,8 @@ class Operations:
 
     def _start(self, operation: Operation) -> None:
         def work() -> None:
+            if not self._hands.wheel.mine():
+                return
             store = self._hands.house.store
             assert store is not None, "an operation comes from a store"
             self._hands.house.drive(load_job(store, operation.name, operation.field))

@@ -100,7 +100,8 @@ class Receiver:
             self._asked = uri
             return
         self._asked = None
-        self._hands.later(lambda: self._hands.house.use_source(uri))
+        if self._hands.wheel.mine():
+            self._hands.later(lambda: self._hands.house.use_source(uri))
 
     def show(self, desk: Desk) -> None:
         """Brings everything up to now, once a second."""

@@ -81,6 +81,8 @@ class Recordings:
 
     def _replay(self, path: Path) -> None:
         def begin() -> None:
+            if not self._hands.wheel.mine():
+                return
             drive = open_recording(path)
             if not len(drive.events):
                 msg = self._hands.words("This recording holds no event.")

@@ -111,6 +111,8 @@ class _Offers(Still):
         press(self._gui, words("Leave it as it is"), lambda: self._hands.later(partial(self._leave, found)))
 
     def _go_on(self, found: Resumable) -> None:
+        if not self._hands.wheel.mine():
+            return
         words = self._words
 
         def tell(part: float) -> None:
@@ -121,6 +123,8 @@ class _Offers(Still):
         self._hands.go(Place.DRIVE)
 
     def _leave(self, found: Resumable) -> None:
+        if not self._hands.wheel.mine():
+            return
         finish_recording(found.path)
         self._hands.tell(self._words("The drive is ended; its recording stays."))
 
@@ -134,6 +138,8 @@ class _Offers(Still):
             )
 
     def _drive(self, operation: str, field: str) -> None:
+        if not self._hands.wheel.mine():
+            return
         store = self._hands.house.store
         assert store is not None, "an operation comes from a store"
         self._hands.house.drive(load_job(store, operation, field))
@@ -175,7 +181,7 @@ class _Offers(Still):
 
     def _drive_now(self) -> None:
         wanted = self._form.read()
-        if wanted is None:
+        if wanted is None or not self._hands.wheel.mine():
             return
         store = self._hands.house.store
         words = self._words

@@ -5,6 +5,7 @@ from typing import ClassVar
 import viser
 
 from guidance_app.console.desk import Desk, Hands
+from guidance_app.console.wheel_strip import WheelStrip
 from guidance_app.console.widgets import STYLE, Shown, notice_line_html, tiles_html, words_html
 from guidance_app.language import message
 from guidance_app.view.drive import work_press
@@ -21,6 +22,7 @@ class Summary:
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
         self._words = words = hands.words
         gui.add_html(STYLE)
+        self._wheel = WheelStrip(gui, hands)
         self._notices = Shown(gui)
         self._tiles = Shown(gui)
         self._fix = Shown(gui)
@@ -34,6 +36,7 @@ class Summary:
 
     def show(self, desk: Desk) -> None:
         """Brings the numbers up to now."""
+        self._wheel.show()
         view = work_view(desk.snapshot, desk.now, desk.units, self._words)
         self._notices.show(notice_line_html(view.notices, self._words))
         self._tiles.show(tiles_html(view.figures))

@@ -6,10 +6,14 @@ import viser
 
 from guidance_app.console.desk import Desk, Hands, Place
 from guidance_app.console.forms import FORM_STYLE
+from guidance_app.console.wheel_strip import WheelStrip
 from guidance_app.console.widgets import STYLE, Shown, notice_html
 from guidance_app.language import message
 
 __all__ = ["Yard"]
+
+MOST_PROBLEMS = 2
+"""More would leave no room for the forms."""
 
 
 class Yard:
@@ -21,10 +25,14 @@ class Yard:
         gui.add_html(STYLE + FORM_STYLE)
         self._hands = hands
         self._words = words = hands.words
+        self._wheel = WheelStrip(gui, hands)
         self._problems = Shown(gui)
         self._back = gui.add_button(words("Back to the drive"), color="green")
         store = hands.house.store
-        problems = () if store is None else tuple(words.say(one.sentence) for one in store.problems)
+        problems = [] if store is None else [words.say(one.sentence) for one in store.problems]
+        if len(problems) > MOST_PROBLEMS:
+            more = words("and {count} more files that cannot be read", count=len(problems) - MOST_PROBLEMS)
+            problems = [*problems[:MOST_PROBLEMS], more]
         self._problems.show(notice_html(problems))
 
         @self._back.on_click
@@ -33,5 +41,6 @@ class Yard:
 
     def show(self, desk: Desk) -> None:
         """Brings the button up to what is driven."""
+        self._wheel.show()
         self._back.visible = self._hands.house.driving
         self._back.label = self._words("Back to the replay" if desk.replay is not None else "Back to the drive")

@@ -1,0 +1,65 @@
+"""Two browsers on one drive: one operates, the other follows, asks, and has the wheel when the first one goes."""
+
+from collections.abc import Iterator
+
+import pytest
+import viser
+from support.snapshots import SetSession, field_snapshot
+from support.stage import Stage, running_viser
+from support.viser_client import viser_client
+
+from guidance_app.model import SkipPass
+
+
+@pytest.fixture
+def server() -> Iterator[viser.ViserServer]:
+    """viser on a free port."""
+    with running_viser() as running:
+        yield running
+
+
+def test_one_operates_and_the_other_follows(server: viser.ViserServer) -> None:
+    session = SetSession(field_snapshot())
+    stage = Stage(server, session)
+    with stage.client() as first:
+        assert "wheel" not in first.words()
+        with stage.client() as second:
+            stage.tick_until(first, lambda: "You have the wheel" in first.words())
+            stage.tick_until(second, lambda: "Tablet 1 has the wheel" in second.words())
+            second.press("Skip")
+            stage.tick_until(second, lambda: any("Another tablet" in str(one) for one in second.messages))
+            assert session.commands == []
+            first.press("Skip")
+            stage.tick_until(first, lambda: session.commands == [SkipPass()])
+            second.press("Ask for the wheel")
+            stage.tick_until(first, lambda: "Tablet 2 wants the wheel" in first.words())
+            first.press("Give it")
+            stage.tick_until(second, lambda: "You have the wheel" in second.words())
+            second.press("Skip")
+            stage.tick_until(second, lambda: session.commands == [SkipPass(), SkipPass()])
+
+
+def test_a_browser_that_vanishes_changes_nothing_and_leaves_the_wheel(server: viser.ViserServer) -> None:
+    session = SetSession(field_snapshot())
+    stage = Stage(server, session)
+    with viser_client(server) as first:
+        stage.tick_until(first, lambda: first.control("Skip"))
+        with stage.client() as second:
+            stage.tick_until(second, lambda: "Tablet 1 has the wheel" in second.words())
+            first.close()
+            stage.tick_until(second, lambda: stage.screen.clients == 1)
+            second.press("Skip")
+            stage.tick_until(second, lambda: session.commands == [SkipPass()])
+
+
+def test_nobody_starts_or_ends_a_drive_from_a_tablet_that_follows(server: viser.ViserServer) -> None:
+    session = SetSession(field_snapshot())
+    stage = Stage(server, session)
+    with stage.client() as first, stage.client() as second:
+        stage.tick_until(second, lambda: "Tablet 1 has the wheel" in second.words())
+        second.press("End the drive")
+        stage.tick_until(second, lambda: second.control("Yes, end the drive now"))
+        second.press("Yes, end the drive now")
+        stage.tick_until(second, lambda: any("Another tablet" in str(one) for one in second.messages))
+        assert stage.screen._house.driving
+        assert first.control("Skip")
