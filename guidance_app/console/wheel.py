@@ -1,4 +1,4 @@
-"""Who has the wheel: of several browsers one operates, the others follow. Pure but for the lock and the clock of ``Helm``.
+"""Who has the wheel: of several browsers one operates, the others follow. Pure, but for ``Helm``'s lock and clock.
 
 The first browser has the wheel and with it alone nobody hears of all this. Who wants it asks; it is free when the
 holder gives it, says nothing for ten seconds, or has gone. A browser that vanishes changes nothing in the drive.
