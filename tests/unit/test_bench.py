@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from guidance_app.bench import growth, latency
+from guidance_app.bench import growth, latency, recording
 from guidance_app.bench.browser import chromium_path
 from guidance_app.bench.errors import BenchError
 from guidance_app.bench.growth import DrivenSession, Growth, Hour, Joining, Stretch, memory_in_use
@@ -170,3 +170,14 @@ def test_rows_are_a_table_or_json() -> None:
     assert json.loads(shown(rows, as_json=True)) == [
         {"bench": "growth", "quantity": "memory", "value": 12.3456, "unit": "MB", "asked": "<= 13", "note": "a note"}
     ]
+
+
+# --- recording -----------------------------------------------------------------------------------------------------
+
+
+def test_recording_is_measured_from_its_cost_to_its_jumps() -> None:
+    rows = {row.quantity: row for row in recording.measured(0.05, paced_s=1.0, jumps=3)}
+    assert 0.0 < rows["processor while recording"].value < 100.0
+    assert 0.1 < rows["size when ended"].value < 4.0
+    assert rows["open, second time"].value > 0.0
+    assert rows["jump, longest, first time"].value >= rows["jump, median, first time"].value > 0.0
