@@ -1,31 +1,46 @@
-"""A time log of ISOXML as a recording: the zip that ``replay`` plays, with the field and the width of the log."""
+"""A time log of ISOXML as a recording with the log's field and width: a zip that ``replay`` plays, or a stored one."""
 
 import io
-import json
 import zipfile
 from datetime import UTC, datetime
+from pathlib import Path
 
 from guidance_app import __version__
 from guidance_app.documents import FieldDocument, Implement, Job, Receiver, Tractor
-from guidance_app.exchange.time_log_drive import TimeLog, events_of
+from guidance_app.exchange import ExchangeError, read_fields
+from guidance_app.exchange.time_log_drive import TimeLog, events_of, read_time_log, time_log_names
+from guidance_app.language import sentence
 from guidance_app.recording import LineWriter, RecordingMeta
-from guidance_app.store.recordings import PACKED, SESSION, packed
+from guidance_app.store.files import StoreError, why
+from guidance_app.store.recordings import PACKED, SESSION, open_recording, packed
+from guidance_app.store.recordings_list import summary_of
+from guidance_app.store.recordings_writing import RecordingFolder
 
-__all__ = ["job_of", "recording_of"]
+__all__ = ["field_of", "job_of", "recording_of", "stored_logs"]
 
 WIDTH = 3.0
 """Metres where the log tells no width, or one that no implement has."""
 NARROWEST, WIDEST = 0.3, 60.0
 """Metres that an implement may be wide."""
 FIRST_MOMENT = (1980, 1, 1, 0, 0, 0)
+"""Of a member of an archive, so that the same log gives the same bytes."""
 
 
-def job_of(log: TimeLog, field: FieldDocument | None, width: float | None = None) -> Job:
-    """Documents for looking at a log: its field, and an implement of its widest working width unless one is given."""
+def field_of(source: Path | bytes, log: TimeLog, name: str = "") -> FieldDocument | None:
+    """The field of the log's task; None where it has none, or none that can be used."""
+    try:
+        fields = read_fields(source, name)
+    except ExchangeError:
+        return None  # the log is looked at all the same
+    return next((field.document for field in fields if field.name == " ".join((log.field or "").split())), None)
+
+
+def job_of(log: TimeLog, field: FieldDocument | None) -> Job:
+    """Documents for looking at a log: its field, and an implement of its widest working width."""
     widest = log.widest if log.widest is not None and NARROWEST <= log.widest <= WIDEST else WIDTH
     return Job(
         tractor=Tractor(name="Tractor", antenna_height=0.0),
-        implement=Implement(name="Implement", working_width=width or widest, offset_back=0.0, length=1.0),
+        implement=Implement(name="Implement", working_width=widest, offset_back=0.0, length=1.0),
         receiver=Receiver(name="Receiver"),
         field=field,
     )
@@ -33,20 +48,54 @@ def job_of(log: TimeLog, field: FieldDocument | None, width: float | None = None
 
 def recording_of(log: TimeLog, job: Job) -> bytes:
     """The recording as a zip, the same bytes for the same log."""
-    started = datetime.fromtimestamp(log.rows[0].utc, UTC)
-    meta = RecordingMeta(
+    target = io.BytesIO()
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_STORED) as archive:
+        archive.writestr(zipfile.ZipInfo(SESSION, FIRST_MOMENT), _meta(log, job).model_dump_json(indent=1) + "\n")
+        archive.writestr(zipfile.ZipInfo(PACKED, FIRST_MOMENT), packed(_lines(log)))
+    return target.getvalue()
+
+
+def stored_logs(content: bytes, name: str, data: Path) -> tuple[Path, ...]:
+    """The folders of recordings that every time log of an upload has become in the data folder.
+
+    Raises ``ExchangeError`` for an upload without any, ``StoreError`` where the folder cannot be written.
+    """
+    names = time_log_names(content, name)
+    if not names:
+        msg = sentence("{name}: there is no time log in it whose two files are both there", name=name)
+        raise ExchangeError(msg)
+    logs = [read_time_log(content, one, name) for one in names]
+    return tuple(_stored(log, job_of(log, field_of(content, log, name)), data) for log in logs)
+
+
+def _stored(log: TimeLog, job: Job, data: Path) -> Path:
+    folder = RecordingFolder.create(data, _meta(log, job))
+    try:
+        text = _lines(log)
+        while text:
+            text = text[folder.append(text) :]
+        folder.sync()
+        folder.pack()
+        folder.write_summary(summary_of(open_recording(folder.path)).model_copy(update={"ended": True}))
+    except OSError as error:
+        msg = f"the recording {folder.path} cannot be written: {why(error)}"
+        raise StoreError(msg) from error
+    finally:
+        folder.close()
+    return folder.path
+
+
+def _meta(log: TimeLog, job: Job) -> RecordingMeta:
+    return RecordingMeta(
         program=f"guidance-app {__version__}",
-        started_utc=started.strftime("%Y-%m-%dT%H:%M:%SZ"),
+        started_utc=datetime.fromtimestamp(log.rows[0].utc, UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
         source=f"time log {log.name}",
         filter=job.receiver.filter,
         notices=(f"A time log of ISOXML: {log.task}", *log.warnings),
         job=job,
     )
+
+
+def _lines(log: TimeLog) -> bytes:
     writer = LineWriter()
-    lines = b"".join(writer.line(event) for event in events_of(log))
-    session = json.dumps(json.loads(meta.model_dump_json()), indent=1, ensure_ascii=False).encode() + b"\n"
-    target = io.BytesIO()
-    with zipfile.ZipFile(target, "w", zipfile.ZIP_STORED) as archive:
-        archive.writestr(zipfile.ZipInfo(SESSION, FIRST_MOMENT), session)
-        archive.writestr(zipfile.ZipInfo(PACKED, FIRST_MOMENT), packed(lines))
-    return target.getvalue()
+    return b"".join(writer.line(event) for event in events_of(log))

@@ -4,9 +4,8 @@ import argparse
 import re
 from pathlib import Path
 
-from guidance_app.batch.time_logs import job_of, recording_of
+from guidance_app.batch.time_logs import field_of, job_of, recording_of
 from guidance_app.commands.options import UseError
-from guidance_app.documents import FieldDocument
 from guidance_app.exchange import (
     WRITERS,
     ExchangeError,
@@ -70,7 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Says what is in the source, or writes one thing of it, whole or not at all."""
     options = _options(arguments)
     if arguments.log is not None:
-        return _write_log(arguments, options)
+        return _write_log(arguments)
     try:
         fields = read_fields(arguments.source, options=options)
     except QuestionError as question:
@@ -133,7 +132,7 @@ def _logs(source: Path) -> tuple[str, ...]:
         return ()  # no ISOXML, so no time log
 
 
-def _write_log(arguments: argparse.Namespace, options: ReadOptions) -> int:
+def _write_log(arguments: argparse.Namespace) -> int:
     if arguments.out is None or arguments.out.suffix.lower() not in {RECORDING, NMEA}:
         msg = f"a time log is written with --out FILE{RECORDING} (a recording) or --out FILE{NMEA}"
         raise UseError(msg)
@@ -141,18 +140,9 @@ def _write_log(arguments: argparse.Namespace, options: ReadOptions) -> int:
     if arguments.out.suffix.lower() == NMEA:
         content = nmea_of(log)
     else:
-        content = recording_of(log, job_of(log, _field_of(arguments.source, log.field, options)))
+        content = recording_of(log, job_of(log, field_of(arguments.source, log)))
     write_atomically(arguments.out, content)
     print(f"{arguments.out}: time log {log.name} of '{log.task}', {len(log.rows)} positions")
     for warning in log.warnings:
         print(f"  {warning}")
     return 0
-
-
-def _field_of(source: Path, name: str | None, options: ReadOptions) -> FieldDocument | None:
-    """The task's field; None where it has none, or none that can be used."""
-    try:
-        fields = read_fields(source, options=options)
-    except ExchangeError:
-        return None
-    return next((field.document for field in fields if field.name == " ".join((name or "").split())), None)

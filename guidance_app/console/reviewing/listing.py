@@ -11,6 +11,7 @@ import viser
 from guidance_app.batch.reviewing import Review, opened_review
 from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.pages import press
+from guidance_app.console.reviewing.outward import TimeLogs
 from guidance_app.console.widgets import Shown, buttons, notice_html
 from guidance_app.language import Words
 from guidance_app.store import StoreError
@@ -61,6 +62,7 @@ class RecordingList:
                 (words("Older"), lambda: go_to(min(page + 1, pages))),
             )
             buttons(gui, label, turns)
+        TimeLogs(gui, hands, lambda: go_to(0))
         hands.later(lambda: self._draw_maps(shown))
 
     def _add(self, gui: viser.GuiApi, one: ListedRecording, look: Callable[[Path], None]) -> None:

@@ -12,6 +12,7 @@ from guidance_app.batch.reviewing import Review, additions_of, entry_of, keep_ad
 from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.files import Download, link_html
 from guidance_app.console.pages import press
+from guidance_app.console.reviewing.outward import add_exports
 from guidance_app.console.widgets import Choice, Shown, notice_html, rows_html
 from guidance_app.geodesy import FieldFrame
 from guidance_app.language import Words
@@ -64,6 +65,7 @@ class Looking:
         self._table = Shown(gui)
         self._add_charts()
         self._add_ledger()
+        add_exports(gui, hands, path)
         hands.later(self._show_on_map)
 
     # --- the map ---------------------------------------------------------------------------------------------------

@@ -17,6 +17,7 @@ from guidance_app.exchange.drives import (
     shapefile_layers,
 )
 from guidance_app.exchange.drives.record import DriveEpoch, DriveExport
+from guidance_app.language import message
 
 __all__ = ["DRIVE_WRITERS", "DriveEpoch", "DriveExport", "DriveFormat"]
 
@@ -32,13 +33,19 @@ class DriveFormat:
 
 DRIVE_WRITERS: Mapping[str, DriveFormat] = MappingProxyType(
     {
-        "csv": DriveFormat(".csv", "every epoch as a row: raw, filtered and predicted", csv_table.written),
-        "gpx": DriveFormat(".gpx", "the track, raw and filtered", gpx_track.written),
-        "kml": DriveFormat(".kml", "track, worked area and skips for Google Earth", kml_drive.written),
-        "geojson": DriveFormat(".geojson", "track with attributes, worked area and skips", geojson_drive.written),
-        "shapefile": DriveFormat(".zip", "points with attributes, worked area and skips", shapefile_layers.written),
-        "isoxml": DriveFormat(".zip", "task data with field, guidance lines and time log", isoxml_drive.written),
-        "nmea": DriveFormat(".nmea", "what the receiver said, as it came", nmea_log.written),
+        "csv": DriveFormat(".csv", message("every epoch as a row: raw, filtered and predicted"), csv_table.written),
+        "gpx": DriveFormat(".gpx", message("the track, raw and filtered"), gpx_track.written),
+        "kml": DriveFormat(".kml", message("track, worked area and skips for Google Earth"), kml_drive.written),
+        "geojson": DriveFormat(
+            ".geojson", message("track with attributes, worked area and skips"), geojson_drive.written
+        ),
+        "shapefile": DriveFormat(
+            ".zip", message("points with attributes, worked area and skips"), shapefile_layers.written
+        ),
+        "isoxml": DriveFormat(
+            ".zip", message("task data with field, guidance lines and time log"), isoxml_drive.written
+        ),
+        "nmea": DriveFormat(".nmea", message("what the receiver said, as it came"), nmea_log.written),
     }
 )
 """By the name that a person chooses."""
