@@ -36,7 +36,8 @@ class Office:
             self.screen.tick()
             if self.client.soon(true, SOON_S):
                 return
-        pytest.fail("it did not happen; the panels say: " + self.client.words()[-2000:])
+        told = [str(one) for one in self.client.messages if one["type"].startswith("Notification")]
+        pytest.fail(f"it did not happen; told {told}; the panels say: {self.client.words()[-2000:]}")
 
     def says(self, pattern: str) -> None:
         self.until(lambda: re.search(pattern, self.client.words()))
@@ -75,8 +76,10 @@ def test_a_drive_leaves_in_every_format(office: Office) -> None:
 
 
 def upload(office: Office, name: str, content: bytes) -> None:
-    found = re.findall(r'data-upload="([\w-]+)" accept=".zip"', office.client.words())
-    take = office.house.files.taker(found[-1])
+    pattern = r'each of its time logs becomes a recording.*?data-upload="([\w-]+)" accept=".zip"'
+    found = re.search(pattern, office.client.words(), re.DOTALL)
+    assert found is not None
+    take = office.house.files.taker(found[1])
     assert take is not None
     take(name, content)
 
