@@ -8,6 +8,7 @@ import contextlib
 import os
 from pathlib import Path
 
+from guidance_app.language import sentence
 from guidance_app.recording import RecordedDrive, RecordingMeta
 from guidance_app.store.files import (
     FolderLock,
@@ -55,7 +56,7 @@ class RecordingFolder:
                 folder.mkdir(parents=True)
                 sync_folder(folder.parent)
             except OSError as error:
-                msg = f"the recording {folder} cannot be made: {why(error)}"
+                msg = sentence("the recording {folder} cannot be made: {reason}", folder=folder, reason=why(error))
                 raise StoreError(msg) from error
             made = cls(folder)
         try:
@@ -80,7 +81,7 @@ class RecordingFolder:
             raise
         except OSError as error:
             made.close()
-            msg = f"the recording {folder} cannot be gone on with: {why(error)}"
+            msg = sentence("the recording {folder} cannot be gone on with: {reason}", folder=folder, reason=why(error))
             raise StoreError(msg) from error
         return made, drive
 
@@ -109,7 +110,7 @@ class RecordingFolder:
         except FileNotFoundError:
             return
         except OSError as error:
-            msg = f"{self.path / EVENTS} cannot be read: {why(error)}"
+            msg = sentence("{path} cannot be read: {reason}", path=self.path / EVENTS, reason=why(error))
             raise StoreError(msg) from error
         write_atomically(self.path / PACKED, packed(text))
         with contextlib.suppress(OSError):  # both are there then, and the packed one is read
@@ -123,7 +124,9 @@ class RecordingFolder:
                 (self.path / name).unlink(missing_ok=True)
             self.path.rmdir()
         except OSError as error:
-            msg = f"the empty recording {self.path} cannot be taken away: {why(error)}"
+            msg = sentence(
+                "the empty recording {path} cannot be taken away: {reason}", path=self.path, reason=why(error)
+            )
             raise StoreError(msg) from error
 
     def close(self) -> None:
@@ -157,11 +160,11 @@ def _locked(folder: Path) -> int:
     try:
         descriptor = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT, 0o644)
     except OSError as error:
-        msg = f"the recording {folder} cannot be written: {why(error)}"
+        msg = sentence("the recording {folder} cannot be written: {reason}", folder=folder, reason=why(error))
         raise StoreError(msg) from error
     if not try_lock(descriptor):
         os.close(descriptor)
-        msg = f"the recording {folder} is being written by another program: close that first"
+        msg = sentence("the recording {folder} is being written by another program: close that first", folder=folder)
         raise StoreError(msg)
     return descriptor
 
