@@ -76,6 +76,7 @@ const sayWords = (known, style) => {
   turnLine.dataset.level = level;
   setText(workLine, known.w === undefined ? "" : known.z ? words.paused : known.w ? words.working : words.lifted);
   workLine.dataset.down = known.w ?? "";
+  workLine.dataset.paused = known.z ?? "";
   setText(speedNumber, known.v ?? "");
   setText(speedUnit, known.v ? style.speed : "");
   setText(fixLine, known.f ?? "");

@@ -6,7 +6,9 @@ import viser
 
 from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.widgets import Shown, notice_html, progress_html, rows_html
+from guidance_app.coordinates import parse_corner
 from guidance_app.documents import Tractor
+from guidance_app.geodesy import CoordinateSystem, Datum
 from guidance_app.language import message
 from guidance_app.model import (
     BeginInitialisation,
@@ -121,12 +123,12 @@ class _Point:
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
         self._hands = hands
         self._words = words = hands.words
+        self._datum = Datum(hands.house.manager.job.receiver.datum)
         self._points = known_points(hands.house.manager.job.field, words)
         names = [one.name for one in self._points]
         options = [*([words(NEAREST)] if names else []), *names, words(TYPED)]
         self._choice = gui.add_dropdown(words("Known point"), options, initial_value=options[0])
-        self._latitude = gui.add_text(words("Latitude (°)"), "", visible=not names)
-        self._longitude = gui.add_text(words("Longitude (°)"), "", visible=not names)
+        self._text = gui.add_text(words("Latitude, longitude"), "", visible=not names)
         self._away = Shown(gui)
 
     def chosen(self) -> KnownPoint | None:
@@ -145,17 +147,16 @@ class _Point:
     def _typed(self) -> KnownPoint | None:
         words = self._words
         try:
-            latitude, longitude = (words.parse_number(one.value) for one in (self._latitude, self._longitude))
-            OnTheMark(latitude, longitude)
+            corner = parse_corner(self._text.value, CoordinateSystem(datum=self._datum))
         except ValueError as error:
-            self._hands.tell(words("Latitude and longitude in degrees"), words.say(error.args[0]), bad=True)
+            self._hands.tell(words("The point cannot be read"), words.say(error.args[0]), bad=True)
             return None
-        return KnownPoint(words(TYPED), latitude, longitude)
+        return KnownPoint(words(TYPED), corner.latitude_deg, corner.longitude_deg)
 
     def show(self, desk: Desk) -> None:
         words = self._words
         typed = self._choice.value == words(TYPED)
-        self._latitude.visible = self._longitude.visible = typed
+        self._text.visible = typed
         snapshot = desk.snapshot
         named = next((one for one in self._points if one.name == self._choice.value), None)
         point = named or (None if typed else nearest_of(self._points, snapshot))

@@ -16,6 +16,7 @@ from guidance_app.model import (
     Pause,
     Resume,
     ReverseDirection,
+    SessionState,
     SetSection,
     SetWorkMode,
     SkipPass,
@@ -27,6 +28,7 @@ from guidance_app.view.status import neighbour, nudge_steps, work_view
 
 __all__ = ["Work"]
 
+PAUSABLE = frozenset({SessionState.DRIVING, SessionState.PAUSED})
 IN_A_ROW = 8
 OFF_MARK = "✕ "
 
@@ -94,6 +96,7 @@ class Work:
         self._line.label = view.line_words
         self._mode.show(self._names[desk.snapshot.work_mode])
         self._pause.label = state_words(desk.snapshot.state, self._words)
+        self._pause.disabled = desk.snapshot.state not in PAUSABLE
         pause = (pause_press(desk.snapshot, self._words).words,)
         if self._pause.options != pause:
             self._pause.options = pause
