@@ -96,7 +96,7 @@ class Work:
         self._line.label = view.line_words
         self._mode.show(self._names[desk.snapshot.work_mode])
         self._pause.label = state_words(desk.snapshot.state, self._words)
-        self._pause.disabled = desk.snapshot.state not in PAUSABLE
+        self._pause.visible = desk.snapshot.state in PAUSABLE
         pause = (pause_press(desk.snapshot, self._words).words,)
         if self._pause.options != pause:
             self._pause.options = pause
