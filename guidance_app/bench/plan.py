@@ -22,6 +22,7 @@ from guidance_app.bench.rows import Row, add_json_option, shown
 from guidance_app.boundary import frame_of, polygon_in
 from guidance_app.documents import Direction, Method
 from guidance_app.guidance.planning import PlanError, PlanRequest, plan_operation
+from guidance_app.guidance.request import LastPass
 from guidance_app.store import StoreError, field_from_file
 
 __all__ = ["add_parser", "measured"]
@@ -164,7 +165,8 @@ def _twice_rows(title: str, width: float, cases: Sequence[Case], fields: Fields)
         f"<= {MOST_TWICE[width]}",
         f"p90 {np.percentile([case.twice for case in cases], 90):.3f}, most {most.field} {most.twice:.3f}",
     )
-    plain, _ = _cases(fields, replace(_request(width), lengthen=False, leftovers=False, square_corners=False))
+    without = replace(_request(width), lengthen=False, leftovers=False, square_corners=False, last_pass=LastPass.GAP)
+    plain, _ = _cases(fields, without)
     yield Row(
         "plan",
         f"{title}worked twice without lengthening, median",

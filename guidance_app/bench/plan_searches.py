@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 import shapely
 
+from guidance_app.bench.plan_counter import counter_row
 from guidance_app.bench.rows import Row
 from guidance_app.documents import Direction
 from guidance_app.guidance.cells import cut, strips_over
@@ -59,6 +60,8 @@ def search_rows(fields: Sequence[tuple[str, shapely.Polygon]]) -> Iterator[Row]:
     yield from _growth_rows()
     yield from _direction_rows(fields)
     yield _replanning_row()
+    middling = sorted(fields, key=lambda field: field[1].area)[len(fields) // 2]
+    yield counter_row(*middling)
     answered = sum(_answered(*odd) for odd in ODD_FIELDS.values())
     yield Row("plan", "odd fields with a plan or a sentence", answered, f"of {len(ODD_FIELDS)}", str(len(ODD_FIELDS)))
 

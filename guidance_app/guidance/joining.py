@@ -97,7 +97,8 @@ class Joiner:
 
     def _way_onto(self, poses: FloatArray, last: FloatArray) -> tuple[int, Turn]:
         """Which of the poses (M, 3), the nearest first, is reached soonest, and how."""
-        for turner in (self._turner, self._lap_turner):
+        near = math.dist(poses[0, :2], last[:2]) < FAR * self._turner.radius
+        for turner in (self._turner, self._lap_turner) if near else ():
             found = turner.nearest(last, poses)
             if found is not None:
                 return found
