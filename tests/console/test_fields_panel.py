@@ -57,6 +57,21 @@ class Yard:
                 yield bool(re.search(pattern, str(one)))
 
     @property
+    def token(self) -> str:
+        """Under which the open form awaits a file."""
+        awaited = r'Choose a (?:file|photo)[^<]*<input[^>]*data-upload="([^"]+)"'
+        self.until(lambda: re.search(awaited, self.client.words()))
+        found = re.search(awaited, self.client.words())
+        assert found is not None
+        return found[1]
+
+    def send(self, name: str, content: bytes) -> None:
+        """What the browser does with a chosen file."""
+        take = self.house.files.taker(self.token)
+        assert take is not None
+        take(name, content)
+
+    @property
     def names(self) -> set[str]:
         store = self.house.store
         assert store is not None
@@ -201,26 +216,17 @@ def test_a_file_is_shown_before_it_is_stored(yard: Yard, tmp_path: Path) -> None
     ring = "[[8.5,47.5],[8.501,47.5],[8.501,47.501],[8.5,47.501],[8.5,47.5]]"
     content = f'{{"type":"Polygon","coordinates":[{ring}]}}'.encode()
     yard.press("File")
-    yard.until(lambda: "data-upload" in yard.client.words())
-    token = re.search(r'data-upload="([^"]+)"', yard.client.words())
-    assert token is not None
-    take = yard.house.files.taker(token[1])
-    assert take is not None
-    take("../../Große Wiese.geojson", content)
+    token = yard.token
+    yard.send("../../Große Wiese.geojson", content)
     yard.says("from")
     yard.press("Store this field")
     yard.until(lambda: "Große Wiese" in yard.names)
-    assert yard.house.files.taker(token[1]) is None
+    assert yard.house.files.taker(token) is None
 
 
 def test_a_file_that_is_no_field_is_refused_with_its_name(yard: Yard) -> None:
     yard.press("File")
-    yard.until(lambda: "data-upload" in yard.client.words())
-    token = re.search(r'data-upload="([^"]+)"', yard.client.words())
-    assert token is not None
-    take = yard.house.files.taker(token[1])
-    assert take is not None
-    take("holiday.geojson", b"not a field")
+    yard.send("holiday.geojson", b"not a field")
     yard.says(r"holiday\.geojson")
 
 
@@ -249,13 +255,8 @@ def test_a_line_that_is_no_corner_is_named(yard: Yard) -> None:
 
 def test_a_list_in_metres_asks_for_its_zone_and_is_read_again(yard: Yard) -> None:
     yard.press("File")
-    yard.until(lambda: "data-upload" in yard.client.words())
-    token = re.search(r'data-upload="([^"]+)"', yard.client.words())
-    assert token is not None
-    take = yard.house.files.taker(token[1])
-    assert take is not None
     rows = "462300,5260900\n462500,5260900\n462500,5261100\n462300,5261100\n"
-    take("corners.csv", f"easting,northing\n{rows}".encode())
+    yard.send("corners.csv", f"easting,northing\n{rows}".encode())
     yard.says("What the file does not say")
     yard.client.set("Coordinates", "UTM")
     yard.client.set("Zone", "32")
@@ -270,12 +271,7 @@ def test_a_field_is_drawn_over_a_photo_that_two_points_lay(yard: Yard) -> None:
     made = io.BytesIO()
     Image.new("RGB", (400, 300), (40, 120, 60)).save(made, "PNG")
     yard.press("Photo")
-    yard.until(lambda: "data-upload" in yard.client.words())
-    token = re.search(r'data-upload="([^"]+)"', yard.client.words())
-    assert token is not None
-    take = yard.house.files.taker(token[1])
-    assert take is not None
-    take("from above.png", made.getvalue())
+    yard.send("from above.png", made.getvalue())
     yard.until(lambda: "/w/sketch/picture" in yard.client.nodes)
     for spot, place in (((-50.0, 0.0), "47.5000, 8.5000"), ((50.0, 0.0), "47.5000, 8.5040")):
         yard.client.tap(*spot)
@@ -301,12 +297,7 @@ def test_a_field_is_drawn_over_a_photo_that_two_points_lay(yard: Yard) -> None:
 
 def test_a_picture_that_is_none_is_refused_and_spots_need_a_tap(yard: Yard) -> None:
     yard.press("Photo")
-    yard.until(lambda: "data-upload" in yard.client.words())
-    token = re.search(r'data-upload="([^"]+)"', yard.client.words())
-    assert token is not None
-    take = yard.house.files.taker(token[1])
-    assert take is not None
-    take("notes.png", b"nothing")
+    yard.send("notes.png", b"nothing")
     yard.says(r"notes\.png is no picture")
     yard.client.set("Latitude, longitude of the spot", "47.5, 8.5")
     yard.press("As typed")
