@@ -58,12 +58,9 @@ class Yard:
 
     @property
     def token(self) -> str:
-        """Under which the open form awaits a file."""
-        awaited = r'Choose a (?:file|photo)[^<]*<input[^>]*data-upload="([^"]+)"'
-        self.until(lambda: re.search(awaited, self.client.words()))
-        found = re.search(awaited, self.client.words())
-        assert found is not None
-        return found[1]
+        """Under which the open form awaits a file: the newest, because other tabs await files too."""
+        self.until(lambda: re.search(r"Nothing is stored before|Lay a photo", self.client.words()))
+        return re.findall(r'data-upload="([^"]+)"', self.client.words())[-1]
 
     def send(self, name: str, content: bytes) -> None:
         """What the browser does with a chosen file."""
