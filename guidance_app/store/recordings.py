@@ -20,6 +20,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from guidance_app.documents import Document, FieldDocument, Implement, Job, Operation, Receiver, Settings, Tractor
+from guidance_app.language import sentence
 from guidance_app.recording import FORMAT, Lines, RecordedDrive, RecordingError, RecordingMeta, read_lines
 from guidance_app.store.files import StoreError, read_bounded, why
 from guidance_app.store.migrations import BrokenDocumentError, NewerDocumentError, decoded
@@ -112,10 +113,10 @@ def job_of_recording(folder: Path) -> Job:
     try:
         return _meta_of(read_bounded(folder / SESSION)).job
     except OSError as error:
-        msg = f"{folder} cannot be read: {why(error)}"
+        msg = sentence("{folder} cannot be read: {reason}", folder=folder, reason=why(error))
         raise StoreError(msg) from error
     except RecordingError as error:
-        msg = f"{folder} cannot be read: {error}"
+        msg = sentence("{folder} cannot be read: {reason}", folder=folder, reason=str(error))
         raise StoreError(msg) from error
 
 
@@ -136,9 +137,9 @@ def read_recording(path: Path) -> RecordingFiles:
             return _from_zip(path)
     except (OSError, EOFError, NotImplementedError, RuntimeError, zlib.error, zipfile.BadZipFile) as error:
         reason = why(error) if isinstance(error, OSError) else str(error) or "it is damaged"
-        msg = f"the recording {path} cannot be read: {reason}"
+        msg = sentence("the recording {path} cannot be read: {reason}", path=path, reason=reason)
         raise StoreError(msg) from error
-    msg = f"there is no recording {path}: check the spelling and the folder"
+    msg = sentence("there is no recording {path}: check the spelling and the folder", path=path)
     raise StoreError(msg)
 
 
@@ -149,7 +150,7 @@ def opened(files: RecordingFiles, progress: Callable[[float], None] | None = Non
         text, damage = _unpacked(files.events)
         lines = read_lines(text, progress)
     except (RecordingError, BrokenDocumentError, NewerDocumentError) as error:
-        msg = f"the recording {files.name} cannot be opened: {error}"
+        msg = sentence("the recording {name} cannot be opened: {reason}", name=files.name, reason=str(error))
         raise StoreError(msg) from error
     digest = hashlib.sha256(files.session + b"\0" + lines.text[: lines.size]).hexdigest()
     return RecordedDrive(files.name, meta, lines, _truncation(lines, damage), digest)
@@ -173,13 +174,13 @@ def read_summary(folder: Path) -> RecordingSummary | None:
 
 def _from_folder(folder: Path) -> RecordingFiles:
     if not (folder / SESSION).is_file():
-        msg = f"{folder} is no recording: there is no {SESSION} in it"
+        msg = sentence("{folder} is no recording: there is no {file} in it", folder=folder, file=SESSION)
         raise StoreError(msg)
     session = read_bounded(folder / SESSION)
     for name in (PACKED, EVENTS):
         if (folder / name).is_file():
             if (folder / name).stat().st_size > MOST_BYTES:
-                msg = f"the recording {folder} cannot be read: its events are larger than 1 GB"
+                msg = sentence("the recording {folder} cannot be read: its events are larger than 1 GB", folder=folder)
                 raise StoreError(msg)
             return RecordingFiles(folder.name, session, (folder / name).read_bytes())
     return RecordingFiles(folder.name, session, b"")
@@ -187,16 +188,20 @@ def _from_folder(folder: Path) -> RecordingFiles:
 
 def _from_zip(path: Path) -> RecordingFiles:
     if not zipfile.is_zipfile(path):
-        msg = f"{path} is no recording: it is neither a recording's folder nor a zip of one"
+        msg = sentence("{path} is no recording: it is neither a recording's folder nor a zip of one", path=path)
         raise StoreError(msg)
     with zipfile.ZipFile(path) as archive:
         names = set(archive.namelist())
         events = next((name for name in (PACKED, EVENTS) if name in names), None)
         if SESSION not in names or events is None:
-            msg = f"{path} is no recording: there is no {SESSION if SESSION not in names else EVENTS} in it"
+            msg = sentence(
+                "{path} is no recording: there is no {file} in it",
+                path=path,
+                file=SESSION if SESSION not in names else EVENTS,
+            )
             raise StoreError(msg)
         if sum(archive.getinfo(name).file_size for name in (SESSION, events)) > MOST_BYTES:
-            msg = f"the recording {path} cannot be read: it unpacks to more than 1 GB"
+            msg = sentence("the recording {path} cannot be read: it unpacks to more than 1 GB", path=path)
             raise StoreError(msg)
         return RecordingFiles(path.stem, archive.read(SESSION), archive.read(events))
 
@@ -213,12 +218,12 @@ def _unpacked(events: bytes) -> tuple[bytes, str | None]:
             try:
                 parts.append(unpacker.decompress(block))
             except zlib.error:
-                return b"".join(parts), "its archive is damaged"
+                return b"".join(parts), sentence("its archive is damaged")
             size += len(parts[-1])
             if size > MOST_BYTES:
-                msg = "its events unpack to more than 1 GB"
+                msg = sentence("its events unpack to more than 1 GB")
                 raise RecordingError(msg)
-    return b"".join(parts), None if unpacker.eof else "its archive is cut off"
+    return b"".join(parts), None if unpacker.eof else sentence("its archive is cut off")
 
 
 def _truncation(lines: Lines, damage: str | None) -> str | None:
@@ -226,8 +231,13 @@ def _truncation(lines: Lines, damage: str | None) -> str | None:
         return None
     where = float(lines.arrivals[-1]) if len(lines) else 0.0
     clock = f"{int(where // 3600)}:{int(where // 60) % 60:02}:{int(where % 60):02}"
-    rest = f"{lines.left_over} bytes that follow are left out" if lines.left_over else damage
-    return f"the recording breaks off at {clock}, after {len(lines)} events: {rest}"
+    left = sentence("{count} bytes that follow are left out", count=lines.left_over)
+    return sentence(
+        "the recording breaks off at {clock}, after {count} events: {reason}",
+        clock=clock,
+        count=len(lines),
+        reason=left if lines.left_over else damage,
+    )
 
 
 # --- session.json ----------------------------------------------------------------------------------------------------
@@ -237,17 +247,22 @@ def _meta_of(content: bytes) -> RecordingMeta:
     members = _members(content)
     version = members.get("schema_version")
     if isinstance(version, int) and version > FORMAT:
-        msg = (
-            f"its {SESSION} has schema version {version} and this program knows up to {FORMAT}:"
-            " it was recorded by a newer version of the program; update this one"
+        msg = sentence(
+            "its {file} has schema version {version} and this program knows up to {known}: it was "
+            "recorded by a newer version of the program; update this one",
+            file=SESSION,
+            version=version,
+            known=FORMAT,
         )
         raise NewerDocumentError(msg, None)
     if members.get("kind") != "recording":
-        msg = f"its {SESSION} is not that of a recorded drive (its kind is {members.get('kind')!r})"
+        msg = sentence(
+            "its {file} is not that of a recorded drive (its kind is {kind!r})", file=SESSION, kind=members.get("kind")
+        )
         raise RecordingError(msg)
     documents = members.pop("job", None)
     if not isinstance(documents, dict):
-        msg = f"its {SESSION} holds no documents"
+        msg = sentence("its {file} holds no documents", file=SESSION)
         raise RecordingError(msg)
     job = _job_of(documents)
     try:
@@ -255,7 +270,7 @@ def _meta_of(content: bytes) -> RecordingMeta:
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
-        msg = f"its {SESSION} is refused: {where}: {first['msg']}"
+        msg = sentence("its {file} is refused: {where}: {reason}", file=SESSION, where=where, reason=first["msg"])
         raise RecordingError(msg) from error
 
 
@@ -263,10 +278,10 @@ def _members(content: bytes) -> dict[str, Any]:
     try:
         members = json.loads(content)
     except (ValueError, RecursionError) as error:
-        msg = f"its {SESSION} is not JSON ({error})"
+        msg = sentence("its {file} is not JSON ({reason})", file=SESSION, reason=str(error))
         raise RecordingError(msg) from error
     if not isinstance(members, dict):
-        msg = f"its {SESSION} is JSON, but does not describe a recording"
+        msg = sentence("its {file} is JSON, but does not describe a recording", file=SESSION)
         raise RecordingError(msg)
     return members
 
@@ -278,7 +293,7 @@ def _job_of(documents: dict[str, Any]) -> Job:
     if isinstance(operation, dict) and operation.get("method") != "line" and documents.get("field") is None:
         missing.append(f"field '{operation.get('field')}', which its operation names,")
     if missing:
-        msg = f"its {SESSION} lacks a document: the {missing[0]} is not there"
+        msg = sentence("its {file} lacks a document: the {missing} is not there", file=SESSION, missing=missing[0])
         raise RecordingError(msg)
     made: dict[str, Document] = {}
     for name, kind in _JOB.items():
@@ -287,6 +302,6 @@ def _job_of(documents: dict[str, Any]) -> Job:
         try:
             made[name] = decoded(json.dumps(documents[name]).encode(), kind)
         except BrokenDocumentError as error:
-            msg = f"its {name} is broken: {error}"
+            msg = sentence("its {name} is broken: {reason}", name=name, reason=str(error))
             raise RecordingError(msg) from error
     return Job.model_validate(made)
