@@ -28,8 +28,7 @@ addEventListener(
 addEventListener("click", (event) => {
   const card = event.target instanceof Element && event.target.closest("[data-press]");
   if (!card) return;
-  const place = card.closest("[role=tabpanel]") ?? document;
-  for (const button of place.querySelectorAll("button")) {
+  for (const button of document.querySelectorAll("button")) {
     if (button.textContent.replace(/^● /, "") === card.dataset.press) {
       button.click();
       return;

@@ -22,7 +22,7 @@ from guidance_app.view.drawing_machines import PICTURES
 from guidance_app.view.entries import Entry, EntryKind, FormView, entries_of, hint_text, unit_text
 from guidance_app.view.units import length_text
 
-__all__ = ["FORM_STYLE", "Form", "Options", "heading_html", "message_html", "picture_html"]
+__all__ = ["FORM_STYLE", "Form", "Options", "heading_html", "hint_html", "message_html", "picture_html"]
 
 M = TypeVar("M", bound=BaseModel)
 Options = Mapping[str, Sequence[tuple[str, str]]]
@@ -30,8 +30,8 @@ Options = Mapping[str, Sequence[tuple[str, str]]]
 
 FORM_STYLE = """<style>
 label[for]{color:var(--mantine-color-text);letter-spacing:0;font-size:1.05em}
-[style*="flex-shrink: 0"]:has(>p>label[for]){width:47%!important}
-.mantine-InputWrapper-root .mantine-Input-input{min-height:1.9rem!important;height:1.9rem!important;font-size:.86rem;
+[style*="flex-shrink: 0"]:has(>p>label[for]){width:42%!important}
+.mantine-InputWrapper-root .mantine-Input-input{min-height:1.9rem!important;height:1.9rem!important;font-size:.82rem;
  border-color:var(--mantine-color-gray-6)}
 .mantine-Textarea-root .mantine-Input-input{height:auto!important}
 .mantine-Checkbox-root .mantine-Checkbox-input{width:1.5rem;height:1.5rem}
@@ -64,6 +64,11 @@ label[for]{color:var(--mantine-color-text);letter-spacing:0;font-size:1.05em}
 def heading_html(words: str) -> str:
     """What a page of forms is about."""
     return f'<div class="g-title">{html.escape(words)}</div>'
+
+
+def hint_html(words: str) -> str:
+    """What helps to fill an entry in, below it."""
+    return f'<div class="g-hint">{html.escape(words)}</div>'
 
 
 def message_html(sentence: str) -> str:

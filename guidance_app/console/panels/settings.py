@@ -11,7 +11,7 @@ from pydantic import Field
 from guidance_app.console.backups import backup_of, contents_of, in_trash, put_back, restored_from
 from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.files import Download, link_html, upload_html
-from guidance_app.console.forms import Form, heading_html
+from guidance_app.console.forms import Form, heading_html, hint_html
 from guidance_app.console.pages import Pages, Still, press
 from guidance_app.console.widgets import Shown, buttons, notice_html
 from guidance_app.documents import Settings as SettingsDocument
@@ -88,8 +88,7 @@ class _SettingsPage:
         def take(name: str) -> None:
             self._form.set("steps", steps_text(PRESETS[name], units, words))
 
-        unit = steps_unit(units)
-        gui.add_html(notice_html([words("Eight numbers in {unit}, from the middle outward.", unit=unit)]))
+        gui.add_html(hint_html(words("Eight numbers in {unit}, from the middle outward", unit=steps_unit(units))))
         buttons(gui, words("Take"), tuple((label, partial(take, name)) for name, label in named.items()))
 
     def _save(self) -> None:
