@@ -43,6 +43,8 @@ __all__ = ["Gathered", "OperationForm", "gathered_from"]
 
 WITH_PASSES = [Method.ROUND_TRIP, Method.TRANSFER, Method.INTERMEDIATE_DIVISION]
 PLANNED = [*WITH_PASSES, Method.SURROUNDING]
+STRAIGHT = ("ab", "a-plus")
+"""Types of guidance lines along which a plan's passes can lie."""
 MEMBERS = (
     "name",
     "field",
@@ -123,15 +125,20 @@ class Gathered:
     tractors: tuple[str, ...]
     implements: tuple[str, ...]
     receivers: tuple[str, ...]
+    lines: tuple[str, ...]
+    """Guidance lines that a plan can follow, of all fields."""
 
 
 def gathered_from(store: Store) -> Gathered:
     """Reads the names."""
+    fields = [one.document for one in store.list(FieldDocument)]
+    lines = dict.fromkeys(line.name for field in fields for line in field.lines if line.type in STRAIGHT)
     return Gathered(
-        tuple(one.document.name for one in store.list(FieldDocument)),
+        tuple(one.name for one in fields),
         tuple(one.document.name for one in store.list(Tractor)),
         tuple(one.document.name for one in store.list(Implement)),
         tuple(one.document.name for one in store.list(Receiver)),
+        tuple(lines),
     )
 
 
@@ -160,6 +167,7 @@ class OperationForm:
             "field": [(one, one) for one in gathered.fields],
             "tractor": [(one, one) for one in gathered.tractors],
             "implement": [(one, one) for one in gathered.implements],
+            "guidance_line": [("", message("The field's first line")), *((one, one) for one in gathered.lines)],
             "receiver": [*((one, one) for one in gathered.receivers), ("", message("Simulated receiver"))],
         }
         self._form = Form(

@@ -41,8 +41,7 @@ def opened(place: SetupPlace, shelf: str, document: str | None = None) -> None:
 
 
 def anew(place: SetupPlace, words: str) -> None:
-    place.press(words)
-    place.until(lambda: place.newest("Save"))
+    place.open_form(words)
 
 
 def test_a_tractor_is_registered(place: SetupPlace) -> None:

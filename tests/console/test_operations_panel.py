@@ -8,7 +8,16 @@ import viser
 from support.setup_place import SetupPlace, setup_place
 from support.stage import running_viser
 
-from guidance_app.documents import Direction, FieldDocument, Implement, Method, Operation, Tractor
+from guidance_app.documents import (
+    Direction,
+    FieldDocument,
+    GuidanceLineDocument,
+    Implement,
+    LineGeometry,
+    Method,
+    Operation,
+    Tractor,
+)
 from guidance_app.store import Store, copy_sample
 
 
@@ -27,8 +36,7 @@ def place(server: viser.ViserServer, tmp_path: Path) -> Iterator[SetupPlace]:
 
 
 def anew(place: SetupPlace, name: str) -> None:
-    place.press("New operation")
-    place.until(lambda: place.newest("Save"))
+    place.open_form("New operation")
     place.fill("Name", name)
 
 
@@ -198,3 +206,20 @@ def test_two_operations_of_one_name_on_two_fields(place: SetupPlace) -> None:
     place.until(lambda: place.names(Operation) == ["Round trip", "Round trip"])
     place.press("Round trip · Second field")
     place.until(lambda: (one := place.newest("Field")) and one["value"] == "Second field")
+
+
+def test_a_guidance_line_is_chosen_by_its_name(place: SetupPlace) -> None:
+    field = place.store.load(FieldDocument, "Sample field")
+    (east, north), (to_east, to_north), *_ = field.document.boundary.coordinates[0]
+    line = GuidanceLineDocument(
+        name="Ditch", type="ab", geometry=LineGeometry(coordinates=[(east, north), (to_east, to_north)])
+    )
+    place.store.save(field.document.model_copy(update={"lines": [line]}), field.revision)
+    anew(place, "along")
+    place.press("Guidance line")
+    place.until(lambda: (one := place.newest("Guidance line")) and one["type"] == "GuiDropdownMessage")
+    place.fill("Guidance line", "Ditch")
+    place.press("Save")
+    place.until(lambda: "along" in place.names(Operation))
+    made = place.store.load(Operation, "along").document
+    assert (made.direction, made.guidance_line) == (Direction.LINE, "Ditch")

@@ -71,8 +71,7 @@ def test_an_operation_is_started_by_its_name(place: SetupPlace) -> None:
 
 def test_what_is_registered_appears_without_opening_the_page_again(place: SetupPlace) -> None:
     place.until(lambda: place.newest("▶ Round trip"))
-    place.press("New operation")
-    place.until(lambda: place.newest("Save"))
+    place.open_form("New operation")
     place.fill("Name", "Spraying")
     place.press("Save")
     place.until(lambda: place.newest("▶ Spraying"))

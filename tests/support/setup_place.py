@@ -63,6 +63,20 @@ class SetupPlace:
         control["value"] = value  # a browser shows it at once
         self._send(control, value)
 
+    def open_form(self, button: str) -> None:
+        """Presses the button that opens an empty form of the same title, and waits for its last button."""
+        self.press(button)
+        self.until(lambda: self._form_is_whole(button))
+
+    def _form_is_whole(self, title: str) -> bool:
+        begun = False
+        for control in list(self.client.controls.values()):
+            props = control["props"]
+            begun = begun or f'"g-title">{title}<' in str(props.get("content"))
+            if begun and props.get("label") == "Save":
+                return True
+        return False
+
     def _send(self, control: dict[str, Any], value: Any) -> None:
         self.client._say(type="GuiUpdateMessage", uuid=control["uuid"], updates={"value": value})
 

@@ -35,20 +35,16 @@ class Plan:
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
         self._hands = hands
         self._words = words = hands.words
-        store = hands.house.store
-        operations = () if store is None else store.list(Operation)
-        self._operations = {f"{each.document.field}: {each.document.name}": each for each in operations}
+        self._operations: dict[str, Stored[Operation]] = {}
+        self._version = -1
         self._stored: Stored[Operation] | None = None
         self._rows: tuple[PreviewRow, ...] = ()
         self._chosen: int | None = None
         self._stop = threading.Event()
         self._running = False
-        if not operations:
-            nothing = words("No operation is registered yet: register a field, machines and an operation first.")
-            Shown(gui).show(notice_html([nothing]))
-        names = tuple(self._operations) or ("-",)
-        self._which = gui.add_dropdown(words("Operation"), names, visible=bool(operations))
-        self._button = gui.add_button(words("Compare plans"), color="green", visible=bool(operations))
+        self._nothing = Shown(gui)
+        self._which: Any = gui.add_dropdown(words("Operation"), ("-",), visible=False)
+        self._button = gui.add_button(words("Compare plans"), color="green", visible=False)
         self._progress: Any = gui.add_progress_bar(0.0, visible=False)
         self._said = Shown(gui)
         self._take = gui.add_button(words("Take this plan"), color="green", visible=False)
@@ -67,6 +63,18 @@ class Plan:
         @self._which.on_update
         async def _(_: object) -> None:
             self._forget()
+
+    def _look(self) -> None:
+        """The operations as they are stored now; on a thread of its own."""
+        store = self._hands.house.store
+        found = () if store is None else store.list(Operation)
+        self._operations = {f"{each.document.field}: {each.document.name}": each for each in found}
+        names = tuple(self._operations) or ("-",)
+        if tuple(self._which.options) != names:
+            self._which.options = names
+        self._which.visible = self._button.visible = bool(found)
+        nothing = self._words("No operation is registered yet: register a field, machines and an operation first.")
+        self._nothing.show("" if found else notice_html([nothing]))
 
     # --- comparing -------------------------------------------------------------------------------------------------
 
@@ -157,6 +165,10 @@ class Plan:
 
     def show(self, desk: Desk) -> None:
         """Brings table, bar and buttons up to what is."""
+        version = self._hands.house.version
+        if version != self._version:
+            self._version = version
+            self._hands.house.aside(self._look)
         words, rows = self._words, self._rows
         self._button.label = words("Stop") if self._running else words("Compare plans")
         self._button.color = "red" if self._running else "green"
