@@ -143,9 +143,14 @@ class Form(Generic[M]):
         self._inputs[member].set(value)
         self._touch(member)
 
-    def read(self) -> M | None:
-        """The document; None when something is wrong, which then stands under its entry."""
-        checked = self._view.checked(self.draft)
+    def read(self, instead: Mapping[str, str] | None = None) -> M | None:
+        """The document; None when something is wrong, which then stands under its entry.
+
+        ``instead`` holds what is taken for texts that are still empty, where the document is only looked at.
+        """
+        draft = self.draft
+        draft |= {member: text for member, text in (instead or {}).items() if not str(draft[member]).strip()}
+        checked = self._view.checked(draft)
         self.say(checked.wrong)
         return checked.document
 

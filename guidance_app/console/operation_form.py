@@ -246,7 +246,10 @@ class OperationForm:
 
     def read(self) -> Operation | None:
         """The operation; None when something is wrong, which then stands in the form."""
-        entries = self._form.read()
+        return self._read({})
+
+    def _read(self, instead: Mapping[str, str]) -> Operation | None:
+        entries = self._form.read(instead)
         options = None if self._options is None else self._options.read()
         if entries is None or (self._options is not None and options is None):
             return None
@@ -268,7 +271,7 @@ class OperationForm:
 
     def _show_plan(self) -> None:
         """Plans as a drive would, from the documents as they are stored and the form as it is."""
-        operation = self.read()
+        operation = self._read({"name": self._words("Operation")})
         store = self._hands.house.store
         if operation is None or store is None or not self._hands.wheel.mine():
             return

@@ -121,13 +121,15 @@ def test_wrong_options_store_nothing(place: SetupPlace, typed: str, said: str) -
 
 def test_the_plan_is_shown_with_its_costs_before_anything_is_stored(place: SetupPlace) -> None:
     anew(place, "")
-    place.fill("Name", "look")
     place.press("Show the plan on the map")
     place.says("way worked")
     place.until(lambda: "/w/sketch/worked" in place.client.nodes)
     assert place.house.manager.snapshot().plan is not None
     assert place.names(Operation) == ["Round trip"]
     assert not place.house.driving
+    place.press("Save")
+    place.says("at least one character")
+    place.fill("Name", "look")
     place.press("Back")
     place.press("Leave without saving")
     place.until(lambda: "/w/sketch/worked" not in place.client.nodes)
