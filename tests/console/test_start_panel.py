@@ -172,3 +172,9 @@ def test_a_broken_recording_does_not_hide_the_operations(server: viser.ViserServ
     (folder / "session.json").write_text(json.dumps({"kind": "recording"}), "utf-8")
     with setup_place(server, data) as place:
         place.until(lambda: place.newest("▶ Round trip"))
+
+
+def test_a_folder_that_cannot_be_read_still_lets_one_drive(server: viser.ViserServer, data: Path) -> None:
+    (data / "recordings").write_text("a file where a folder belongs", "utf-8")
+    with setup_place(server, data) as place:
+        place.until(lambda: place.newest("Drive now"))

@@ -17,7 +17,7 @@ from guidance_app.console.receiver_form import sources_found
 from guidance_app.console.widgets import Shown, notice_html
 from guidance_app.documents import Implement, Job, Receiver, Tractor, quantity
 from guidance_app.language import Words, message
-from guidance_app.store import load_job
+from guidance_app.store import StoreError, load_job
 from guidance_app.store.recordings_list import Resumable, finish_recording
 
 __all__ = ["Start", "cut_off_words"]
@@ -74,9 +74,13 @@ class Start:
 
     def _gather(self) -> None:
         """On a thread of its own; the page is only made anew when there is something new."""
+        store = self._hands.house.store
         try:
-            store = self._hands.house.store
             found = None if store is None else beginnings_of(store)
+        except (StoreError, OSError) as error:
+            found = None  # one may still drive with a width
+            self._hands.tell(self._hands.words("Not done"), self._hands.words.say(str(error)), bad=True)
+        try:
             sources = sources_found(self._hands.words, self._hands.house.list_ports)
         finally:
             self._gathering = False
