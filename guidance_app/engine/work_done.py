@@ -229,9 +229,9 @@ class WorkDone:
             case ReverseDirection():
                 if not tracker.reverse():
                     return sentence("There is no line yet to be driven the other way.")
-        if self._ground is not None and self._ground.plan is not None:
-            self._plan_rest(tracker)
-        return None
+        if self._ground is None or self._ground.plan is None or self._guided is None:
+            return None
+        return self._plan_rest(tracker)
 
     def _plan_rest(self, tracker: Tracker) -> str | None:
         """Plans what is left from where the tractor is; the pass being worked stays the target."""
