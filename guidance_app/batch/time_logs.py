@@ -8,15 +8,11 @@ from pathlib import Path
 from guidance_app import __version__
 from guidance_app.documents import FieldDocument, Implement, Job, Receiver, Tractor
 from guidance_app.exchange import ExchangeError, read_fields
-from guidance_app.exchange.time_log_drive import TimeLog, events_of, read_time_log, time_log_names
-from guidance_app.language import sentence
+from guidance_app.exchange.time_log_drive import TimeLog, events_of
 from guidance_app.recording import LineWriter, RecordingMeta
-from guidance_app.store.files import StoreError, why
-from guidance_app.store.recordings import PACKED, SESSION, open_recording, packed
-from guidance_app.store.recordings_list import summary_of
-from guidance_app.store.recordings_writing import RecordingFolder
+from guidance_app.store.recordings import PACKED, SESSION, packed
 
-__all__ = ["field_of", "job_of", "recording_of", "stored_logs"]
+__all__ = ["field_of", "job_of", "recording_of"]
 
 WIDTH = 3.0
 """Metres where the log tells no width, or one that no implement has."""
@@ -53,36 +49,6 @@ def recording_of(log: TimeLog, job: Job) -> bytes:
         archive.writestr(zipfile.ZipInfo(SESSION, FIRST_MOMENT), _meta(log, job).model_dump_json(indent=1) + "\n")
         archive.writestr(zipfile.ZipInfo(PACKED, FIRST_MOMENT), packed(_lines(log)))
     return target.getvalue()
-
-
-def stored_logs(content: bytes, name: str, data: Path) -> tuple[Path, ...]:
-    """The folders of recordings that every time log of an upload has become in the data folder.
-
-    Raises ``ExchangeError`` for an upload without any, ``StoreError`` where the folder cannot be written.
-    """
-    names = time_log_names(content, name)
-    if not names:
-        msg = sentence("{name}: there is no time log in it whose two files are both there", name=name)
-        raise ExchangeError(msg)
-    logs = [read_time_log(content, one, name) for one in names]
-    return tuple(_stored(log, job_of(log, field_of(content, log, name)), data) for log in logs)
-
-
-def _stored(log: TimeLog, job: Job, data: Path) -> Path:
-    folder = RecordingFolder.create(data, _meta(log, job))
-    try:
-        text = _lines(log)
-        while text:
-            text = text[folder.append(text) :]
-        folder.sync()
-        folder.pack()
-        folder.write_summary(summary_of(open_recording(folder.path)).model_copy(update={"ended": True}))
-    except OSError as error:
-        msg = f"the recording {folder.path} cannot be written: {why(error)}"
-        raise StoreError(msg) from error
-    finally:
-        folder.close()
-    return folder.path
 
 
 def _meta(log: TimeLog, job: Job) -> RecordingMeta:

@@ -3,13 +3,13 @@
 import argparse
 import datetime
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
-from guidance_app.batch.reviewing import additions_of, entry_of, opened_review
+from guidance_app.batch.ledgers import Choice, ledger_entries
 from guidance_app.commands.options import UseError, add_data_option, chosen_data_folder
 from guidance_app.language import LANGUAGES, words_for
-from guidance_app.reports import SHEETS, LedgerEntry
-from guidance_app.store import StoreError
+from guidance_app.reports import SHEETS
 from guidance_app.store.recordings_list import list_recordings
 
 __all__ = ["add_parser", "run"]
@@ -23,9 +23,13 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         description="Writes the ledger of the given recordings, or of all in the data folder of a day or a time.",
     )
     parser.add_argument("recordings", nargs="*", type=Path, metavar="RECORDING", help="folders or zips of recordings")
-    parser.add_argument("--day", type=_day, metavar="YYYY-MM-DD", help="all of this day (UTC)")
-    parser.add_argument("--from", dest="first", type=_day, metavar="YYYY-MM-DD", help="all from this day on (UTC)")
-    parser.add_argument("--to", dest="last", type=_day, metavar="YYYY-MM-DD", help="all up to this day (UTC)")
+    parser.add_argument("--day", type=_day, metavar="YYYY-MM-DD", help="all of this day (this machine's time zone)")
+    parser.add_argument(
+        "--from", dest="first", type=_day, metavar="YYYY-MM-DD", help="all from this day on (this machine's time zone)"
+    )
+    parser.add_argument(
+        "--to", dest="last", type=_day, metavar="YYYY-MM-DD", help="all up to this day (this machine's time zone)"
+    )
     parser.add_argument("--field", metavar="NAME", help="only drives on this field")
     parser.add_argument("--title", default="", help="what stands above the sheet")
     parser.add_argument("--language", choices=LANGUAGES, default="en", help="of the sheet (default en)")
@@ -44,44 +48,33 @@ def run(arguments: argparse.Namespace) -> int:
     words = words_for(arguments.language)
     data = chosen_data_folder(arguments)
     paths = arguments.recordings or [one.path for one in list_recordings(data) if one.summary is not None]
-    entries, left_out = _entries(paths, data)
-    chosen = sorted((one for one in entries if _wanted(one, arguments)), key=lambda one: (one.start is None, one.start))
-    if not chosen:
+    choice = Choice(arguments.day or arguments.first, arguments.day or arguments.last, arguments.field)
+    found = ledger_entries(paths, data, choice, _teller(paths))
+    for reason in found.left_out:
+        print(f"left out: {reason}", file=sys.stderr)
+    if not found.entries:
         msg = f"no recording fits: {len(paths)} looked at in {data}"
         raise UseError(msg)
     try:
-        arguments.out.write_bytes(sheet(chosen, arguments.title or words("Ledger"), words))
+        arguments.out.write_bytes(sheet(found.entries, arguments.title or words("Ledger"), words))
     except OSError as error:
         msg = f"{arguments.out} cannot be written: {error.strerror}"
         raise UseError(msg) from error
-    worked = sum(one.worked for one in chosen) / 10_000
-    print(f"{arguments.out}: {len(chosen)} drives, {worked:.2f} ha")
-    return 1 if left_out else 0
+    print(f"{arguments.out}: {len(found.entries)} drives, {found.worked / 10_000:.2f} ha")
+    return 1 if found.left_out else 0
 
 
-def _entries(paths: list[Path], data: Path) -> tuple[list[LedgerEntry], int]:
-    entries, left_out = [], 0
-    for number, path in enumerate(paths, start=1):
-        print(f"{number} of {len(paths)}: {path.name}", file=sys.stderr)
-        try:
-            additions = additions_of(path) if path.is_dir() else None
-            entries.append(entry_of(opened_review(path, data), additions))
-        except StoreError as error:
-            left_out += 1
-            print(f"left out: {error}", file=sys.stderr)
-    return entries, left_out
+def _teller(paths: list[Path]) -> Callable[[int, float], None]:
+    """Says each recording once."""
+    told: set[int] = set()
 
+    def tell(number: int, done: float) -> None:
+        del done
+        if number not in told:
+            told.add(number)
+            print(f"{number + 1} of {len(paths)}: {paths[number].name}", file=sys.stderr)
 
-def _wanted(entry: LedgerEntry, arguments: argparse.Namespace) -> bool:
-    if arguments.field is not None and entry.field != arguments.field:
-        return False
-    bounds = (arguments.day or arguments.first, arguments.day or arguments.last)
-    if bounds == (None, None):
-        return True
-    if entry.start is None:
-        return False
-    day = entry.start.date()
-    return (bounds[0] is None or day >= bounds[0]) and (bounds[1] is None or day <= bounds[1])
+    return tell
 
 
 def _day(text: str) -> datetime.date:

@@ -10,7 +10,21 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 
-__all__ = ["LARGEST_UPLOAD", "LONGEST_NAME", "Download", "Files", "Taker", "link_html", "upload_html"]
+from guidance_app.language import Words
+
+__all__ = [
+    "LARGEST_UPLOAD",
+    "LONGEST_NAME",
+    "Download",
+    "Files",
+    "Maker",
+    "NotMadeError",
+    "Taker",
+    "link_html",
+    "made_link_html",
+    "note_said",
+    "upload_html",
+]
 
 LARGEST_UPLOAD = 64 * 1024 * 1024
 """Bytes; the largest real field archive has a few hundred thousand."""
@@ -29,7 +43,12 @@ class Download:
     data: bytes
 
 
+class NotMadeError(Exception):
+    """A file that was asked for cannot be made; the message is a sentence in the language of who asked."""
+
+
 Maker = Callable[[], Download | None]
+"""Makes a file when it is asked for; may raise ``NotMadeError``."""
 
 
 class Files:
@@ -78,6 +97,18 @@ class Files:
 def link_html(address: str, words: str) -> str:
     """A link that looks like a button and stores the file."""
     return f'<a class="g-file" href="{html.escape(address)}" download>{html.escape(words)}</a>'
+
+
+def made_link_html(address: str, words: str, making: str, failed: str) -> str:
+    """The same for a file that takes its time: ``making`` stands in it meanwhile, ``failed`` when nothing came."""
+    said = f'data-making="{html.escape(making)}" data-failed="{html.escape(failed)}"'
+    return f'<a class="g-file" href="{html.escape(address)}" download {said}>{html.escape(words)}</a>'
+
+
+def note_said(error: Exception, words: Words) -> str:
+    """The sentence of an error in the language of ``words``."""
+    first = error.args[0] if error.args else ""
+    return words.say(first) if isinstance(first, str) else str(error)
 
 
 def upload_html(token: str, words: str, accept: str = "") -> str:

@@ -22,7 +22,7 @@ from starlette.responses import PlainTextResponse, RedirectResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
-from guidance_app.console.files import LONGEST_NAME, Download, Files, Taker
+from guidance_app.console.files import LONGEST_NAME, Download, Files, Maker, NotMadeError, Taker
 from guidance_app.console.live import LiveHub
 from guidance_app.console.proxy import pass_through
 from guidance_app.language import Words, message
@@ -46,6 +46,7 @@ HEAD = (
     '<script src="/static/page.js"></script>'
     '<script src="/static/touch.js"></script>'
     '<script src="/static/upload.js"></script>'
+    '<script src="/static/download.js"></script>'
     '<script src="/static/forms.js"></script>'
     '<script type="module" src="/static/lightbar.js"></script>'
 )
@@ -131,9 +132,7 @@ def front_app(
         return files[ICON].response(request)
 
     async def download(request: Request) -> Response:
-        make = exchanged.maker(request.path_params["name"])
-        made = None if make is None else await asyncio.to_thread(make)
-        return PlainTextResponse("nothing to download", 404) if made is None else _attached(made)
+        return await _made(exchanged.maker(request.path_params["name"]))
 
     async def upload(request: Request) -> Response:
         take, words = exchanged.taker(request.path_params["token"]), language()
@@ -162,6 +161,15 @@ def front_app(
         WebSocketRoute("/", viser_socket),
     ]
     return Starlette(routes=routes, lifespan=lifespan)
+
+
+async def _made(make: Maker | None) -> Response:
+    """What the maker makes, or its sentence on why it cannot."""
+    try:
+        made = None if make is None else await asyncio.to_thread(make)
+    except NotMadeError as error:
+        return PlainTextResponse(str(error), 409)
+    return PlainTextResponse("nothing to download", 404) if made is None else _attached(made)
 
 
 def _attached(made: Download) -> Response:

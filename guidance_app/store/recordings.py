@@ -13,9 +13,9 @@ import zipfile
 import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePath
 from types import MappingProxyType
-from typing import Any
+from typing import Any, BinaryIO
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -34,12 +34,14 @@ __all__ = [
     "RecordingFiles",
     "RecordingSummary",
     "is_recording",
+    "is_recording_zip",
     "job_of_recording",
     "open_recording",
     "opened",
     "packed",
     "read_recording",
     "read_summary",
+    "recording_in",
 ]
 
 RECORDINGS = "recordings"
@@ -102,10 +104,24 @@ def is_recording(path: Path) -> bool:
     try:
         if path.is_dir():
             return (path / SESSION).is_file() and any((path / name).is_file() for name in (EVENTS, PACKED))
-        with zipfile.ZipFile(path) as archive:
-            return SESSION in archive.namelist()
+        with path.open("rb") as file:
+            return _holds_recording(file)
     except (OSError, zipfile.BadZipFile):
         return False
+
+
+def is_recording_zip(content: bytes) -> bool:
+    """Whether these bytes are a zip of a recording, by its names alone."""
+    try:
+        return _holds_recording(io.BytesIO(content))
+    except (OSError, zipfile.BadZipFile):
+        return False
+
+
+def _holds_recording(file: BinaryIO) -> bool:
+    with zipfile.ZipFile(file) as archive:
+        names = set(archive.namelist())
+        return _home_in(names) + SESSION in names
 
 
 def job_of_recording(folder: Path) -> Job:
@@ -134,13 +150,23 @@ def read_recording(path: Path) -> RecordingFiles:
         if path.is_dir():
             return _from_folder(path)
         if path.is_file():
-            return _from_zip(path)
+            with path.open("rb") as file:
+                return _from_zip(file, path.name)
     except (OSError, EOFError, NotImplementedError, RuntimeError, zlib.error, zipfile.BadZipFile) as error:
         reason = why(error) if isinstance(error, OSError) else str(error) or "it is damaged"
         msg = sentence("the recording {path} cannot be read: {reason}", path=path, reason=reason)
         raise StoreError(msg) from error
     msg = sentence("there is no recording {path}: check the spelling and the folder", path=path)
     raise StoreError(msg)
+
+
+def recording_in(content: bytes, name: str) -> RecordingFiles:
+    """The contents of a recording that came as a zip; ``name`` is that of the zip. Raises ``StoreError``."""
+    try:
+        return _from_zip(io.BytesIO(content), name)
+    except (OSError, EOFError, NotImplementedError, RuntimeError, zlib.error, zipfile.BadZipFile) as error:
+        msg = sentence("the recording {path} cannot be read: {reason}", path=name, reason=str(error) or "it is damaged")
+        raise StoreError(msg) from error
 
 
 def opened(files: RecordingFiles, progress: Callable[[float], None] | None = None) -> RecordedDrive:
@@ -186,24 +212,29 @@ def _from_folder(folder: Path) -> RecordingFiles:
     return RecordingFiles(folder.name, session, b"")
 
 
-def _from_zip(path: Path) -> RecordingFiles:
-    if not zipfile.is_zipfile(path):
-        msg = sentence("{path} is no recording: it is neither a recording's folder nor a zip of one", path=path)
+def _from_zip(file: BinaryIO, name: str) -> RecordingFiles:
+    if not zipfile.is_zipfile(file):
+        msg = sentence("{path} is no recording: it is neither a recording's folder nor a zip of one", path=name)
         raise StoreError(msg)
-    with zipfile.ZipFile(path) as archive:
+    with zipfile.ZipFile(file) as archive:
         names = set(archive.namelist())
-        events = next((name for name in (PACKED, EVENTS) if name in names), None)
-        if SESSION not in names or events is None:
-            msg = sentence(
-                "{path} is no recording: there is no {file} in it",
-                path=path,
-                file=SESSION if SESSION not in names else EVENTS,
-            )
+        home = _home_in(names)
+        events = next((home + each for each in (PACKED, EVENTS) if home + each in names), None)
+        session = home + SESSION
+        if session not in names or events is None:
+            missing = SESSION if session not in names else EVENTS
+            msg = sentence("{path} is no recording: there is no {file} in it", path=name, file=missing)
             raise StoreError(msg)
-        if sum(archive.getinfo(name).file_size for name in (SESSION, events)) > MOST_BYTES:
-            msg = sentence("the recording {path} cannot be read: it unpacks to more than 1 GB", path=path)
+        if sum(archive.getinfo(each).file_size for each in (session, events)) > MOST_BYTES:
+            msg = sentence("the recording {path} cannot be read: it unpacks to more than 1 GB", path=name)
             raise StoreError(msg)
-        return RecordingFiles(path.stem, archive.read(SESSION), archive.read(events))
+        return RecordingFiles(PurePath(name).stem, archive.read(session), archive.read(events))
+
+
+def _home_in(names: set[str]) -> str:
+    """Where in a zip the recording lies: at its top, or in the one folder that was zipped."""
+    homes = {name.removesuffix(SESSION) for name in names if name.count("/") == 1 and name.endswith(f"/{SESSION}")}
+    return homes.pop() if SESSION not in names and len(homes) == 1 else ""
 
 
 def _unpacked(events: bytes) -> tuple[bytes, str | None]:

@@ -11,7 +11,7 @@ from guidance_app.recording.moving import moved_events, moved_job
 from guidance_app.store.files import write_atomically
 from guidance_app.store.recordings import PACKED, SESSION, packed
 
-__all__ = ["WrittenReport", "write_report"]
+__all__ = ["WrittenReport", "report_of", "write_report"]
 
 README = "README.txt"
 _hide_secrets = re.compile(r"(?<=//)[^/@\s]*@").sub
@@ -28,6 +28,13 @@ class WrittenReport:
 
 def write_report(drive: RecordedDrive, target: Path, move: int | None = None) -> WrittenReport:
     """Writes the drive as a zip, ``move`` degrees of longitude to the east if given. Raises ``StoreError``."""
+    content, written = report_of(drive, move)
+    write_atomically(target, content)
+    return written
+
+
+def report_of(drive: RecordedDrive, move: int | None = None) -> tuple[bytes, WrittenReport]:
+    """The drive as a zip, ``move`` degrees of longitude to the east if given, and what is in it."""
     meta, events, blanked = drive.meta, drive.events, None
     if move is not None:
         moved = moved_events(events, move)
@@ -40,8 +47,8 @@ def write_report(drive: RecordedDrive, target: Path, move: int | None = None) ->
         archive.writestr(SESSION, _without_secrets(meta).model_dump_json(indent=1))
         archive.writestr(zipfile.ZipInfo(PACKED), packed(text))
         archive.writestr(README, _readme(drive, blanked))
-    write_atomically(target, content.getvalue())
-    return WrittenReport(len(events), len(content.getvalue()), blanked)
+    made = content.getvalue()
+    return made, WrittenReport(len(events), len(made), blanked)
 
 
 def _without_secrets(meta: RecordingMeta) -> RecordingMeta:

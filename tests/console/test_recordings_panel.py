@@ -1,6 +1,9 @@
 """The recordings panel: what was driven is found, shown on the map, compared, replayed and handed in."""
 
+import io
 import re
+import shutil
+import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -11,11 +14,14 @@ from support.stage import running_viser
 from support.viser_client import ViserClient, viser_client
 
 from guidance_app.batch.reviewing import additions_of
+from guidance_app.console.files import Download, NotMadeError
 from guidance_app.console.house import House
 from guidance_app.console.screen import Screen
+from guidance_app.exchange.drives import DRIVE_WRITERS
 from guidance_app.runtime import SessionManager
 from guidance_app.sources.file import load_log
 from guidance_app.store import SAMPLE_RECORDING, Store, copy_sample, load_job
+from guidance_app.store.recordings import open_recording
 from guidance_app.store.recordings_list import list_recordings
 
 MOST_REDRAWS = 1500
@@ -48,6 +54,9 @@ class Office:
 
     def says(self, pattern: str) -> None:
         self.until(lambda: re.search(pattern, self.client.words()))
+
+    def told(self, words: str) -> None:
+        self.until(lambda: any(words in str(one) for one in self.client.heard("NotificationShowMessage")))
 
     def label(self, pattern: str) -> str:
         labels = [str(one["props"].get("label")) for one in self.client.controls.values()]
@@ -102,9 +111,9 @@ def test_two_drives_are_compared(office: Office, data: Path) -> None:
     assert other in options or len(options) == 2
     office.client.set("Compare with", options[1])
     office.says("other rms")
-    office.until(lambda: "/w/sketch/review other" in office.client.nodes)
+    office.until(lambda: "/w/sketch/review-other" in office.client.nodes)
     office.client.set("Compare with", options[0])
-    office.until(lambda: "/w/sketch/review other" not in office.client.nodes)
+    office.until(lambda: "/w/sketch/review-other" not in office.client.nodes)
 
 
 def test_the_ledger_keeps_what_the_driver_adds(office: Office, data: Path) -> None:
@@ -136,3 +145,101 @@ def test_without_any_recording_it_says_how_one_comes(tmp_path: Path) -> None:
             empty.says("Every drive records itself")
     house.close()
     manager.close()
+
+
+def made_by(office: Office, label: str) -> Download:
+    """What the front would send for the link of this label."""
+    office.says(label)
+    address = re.findall(rf"/download/([\w-]+)\"[^>]*>{re.escape(label)}<", office.client.words())[-1]
+    make = office.house.files.maker(address)
+    assert make is not None
+    made = make()
+    assert made is not None
+    return made
+
+
+def report_differs(office: Office, other: Download) -> bool:
+    return made_by(office, "Zip for a bug report").data != other.data
+
+
+def test_a_bug_report_is_made_here_and_elsewhere(office: Office, tmp_path: Path) -> None:
+    office.open_newest()
+    here = made_by(office, "Zip for a bug report")
+    office.client.set("Move it elsewhere on earth", value=True)
+    office.until(lambda: report_differs(office, here))
+    there = made_by(office, "Zip for a bug report")
+    drives = []
+    for number, one in enumerate((here, there)):
+        path = tmp_path / f"{number}.zip"
+        path.write_bytes(one.data)
+        drives.append(open_recording(path))
+    places = [drive.job.field.boundary.coordinates[0][0] for drive in drives if drive.job.field is not None]
+    assert abs(places[0][0] - places[1][0]) > 0.9
+    assert places[0][1] == places[1][1]
+
+
+def test_what_cannot_be_made_is_one_sentence(office: Office, data: Path) -> None:
+    office.open_newest()
+    office.says("NMEA: ")
+    newest = next(one.path for one in list_recordings(data) if one.summary is not None)
+    away = newest.rename(data / "away")
+    try:
+        with pytest.raises(NotMadeError, match="there is no recording"):
+            made_by(office, f"NMEA: {DRIVE_WRITERS['nmea'].words}")
+    finally:
+        away.rename(newest)
+
+
+def test_a_recording_is_deleted_and_comes_back(office: Office, data: Path) -> None:
+    before = [one.path for one in list_recordings(data)]
+    office.open_newest()
+    office.client.press("Delete this recording")
+    office.says("is deleted")
+    assert len(list_recordings(data)) == len(before) - 1
+    office.client.press("Undo")
+    office.says("It is back")
+    assert [one.path for one in list_recordings(data)] == before
+
+
+def taken(office: Office, name: str, content: bytes) -> None:
+    office.says("Take in a recording")
+    found = re.search(r'time logs becomes a recording.*?data-upload="([\w-]+)"', office.client.words(), re.DOTALL)
+    assert found is not None
+    take = office.house.files.taker(found[1])
+    assert take is not None
+    take(name, content)
+
+
+def test_a_recording_is_taken_in_once_and_shown(office: Office, data: Path, tmp_path: Path) -> None:
+    office.says("Look at")
+    newest = next(one.path for one in list_recordings(data) if one.summary is not None)
+    kept = newest.rename(data / "away")
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w") as archive:
+        for path in kept.iterdir():
+            archive.write(path, f"{newest.name}/{path.name}")
+    taken(office, "drive.zip", content.getvalue())
+    office.says("1 recording was taken in")
+    assert newest.name in [one.path.name for one in list_recordings(data)]
+    taken(office, "drive.zip", content.getvalue())
+    office.told("in the list already")
+    shutil.rmtree(newest)
+    kept.rename(newest)
+
+
+def test_a_file_of_something_else_is_refused(office: Office) -> None:
+    taken(office, "holiday.zip", b"no zip")
+    office.told("is no recording")
+
+
+def test_the_ledger_of_several_drives(office: Office) -> None:
+    office.says("Look at")
+    office.until(lambda: office.client.control("Ledger of several"))
+    office.client.press("Ledger of several")
+    office.until(lambda: office.client.control("Make the ledger"))
+    office.client.set("Field", "Sample field")
+    office.client.press("any day")
+    office.client.press("Make the ledger")
+    office.says("2 drives")
+    assert made_by(office, "Ledger as PDF").data.startswith(b"%PDF")
+    assert made_by(office, "Ledger as CSV").data.count(b"\n") >= 3

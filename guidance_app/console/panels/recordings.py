@@ -6,15 +6,18 @@ from typing import Any, ClassVar
 import viser
 
 from guidance_app.batch.reviewing import Review, opened_review
+from guidance_app.batch.taking_in import taken_in
 from guidance_app.console.desk import Desk, Hands, Place
 from guidance_app.console.pages import Page, Pages
-from guidance_app.console.reviewing.listing import RecordingList
-from guidance_app.console.reviewing.looking import Looking
+from guidance_app.console.reviewing.listing import ListWays, RecordingList
+from guidance_app.console.reviewing.looking import Looking, Ways
+from guidance_app.console.reviewing.several import LedgerOfSeveral
 from guidance_app.console.widgets import Shown, notice_html
 from guidance_app.language import message
 from guidance_app.runtime import ReplaySession, cache_folder
-from guidance_app.store import StoreError
+from guidance_app.store import Removed, StoreError
 from guidance_app.store.recordings import open_recording
+from guidance_app.store.recordings_keeping import bring_back, remove_recording
 from guidance_app.store.recordings_list import list_recordings
 
 __all__ = ["Recordings"]
@@ -30,15 +33,56 @@ class Recordings:
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
         self._hands = hands
         self._pages = Pages(gui, hands)
+        self._removed: Removed | None = None
         self._go_to(0)
 
     def show(self, desk: Desk) -> None:
         """Brings the open page up to now."""
         self._pages.show(desk)
 
-    def _go_to(self, page: int) -> None:
+    def _go_to(self, page: int, said: tuple[str, ...] = ()) -> None:
         self._hands.sketch.clear()
-        self._pages.turn(lambda gui: RecordingList(gui, self._hands, page, self._look, self._go_to))
+        undo = None if self._removed is None else self._undo
+        ways = ListWays(self._look, self._go_to, self._ledger, self._take, undo)
+        self._pages.turn(lambda gui: RecordingList(gui, self._hands, page, ways, said))
+
+    # --- what comes, goes and comes back ---------------------------------------------------------------------------
+
+    def _take(self, name: str, content: bytes) -> None:
+        def keep() -> None:
+            words = self._hands.words
+            folders, told = taken_in(self._data, content, name)
+            said = words.plural("{n} recording was taken in.", "{n} recordings were taken in.", len(folders))
+            self._go_to(0, (said, *(words.say(one) for one in told)))
+
+        self._hands.later(keep)
+
+    def _delete(self, path: Path) -> None:
+        def delete() -> None:
+            self._removed = remove_recording(self._data, path)
+            self._go_to(0, (self._hands.words("'{name}' is deleted.", name=path.name),))
+
+        self._hands.later(delete)
+
+    def _undo(self) -> None:
+        def work() -> None:
+            removed, self._removed = self._removed, None
+            if removed is not None:
+                bring_back(self._data, removed)
+            self._go_to(0, (self._hands.words("It is back."),))
+
+        self._hands.later(work)
+
+    def _ledger(self) -> None:
+        self._pages.turn(lambda gui: LedgerOfSeveral(gui, self._hands, self._data, lambda: self._go_to(0)))
+
+    @property
+    def _data(self) -> Path:
+        store = self._hands.house.store
+        assert store is not None, "without a store there are no recordings"
+        return store.root
+
+    # --- one of them -----------------------------------------------------------------------------------------------
 
     def _look(self, path: Path) -> None:
         progress = _Progress(self._hands)
@@ -56,7 +100,8 @@ class Recordings:
         self._pages.turn(lambda gui: self._looking(gui, path, review))
 
     def _looking(self, gui: viser.GuiApi, path: Path, review: Review) -> Page:
-        page = Looking(gui, self._hands, path, review, lambda: self._go_to(0), lambda: self._replay(path))
+        ways = Ways(lambda: self._go_to(0), lambda: self._replay(path), lambda: self._delete(path))
+        page = Looking(gui, self._hands, path, review, ways)
         store = self._hands.house.store
         others = [] if store is None else [one for one in list_recordings(store.root) if one.summary is not None]
         paths = [one.path for one in others if one.path != path]

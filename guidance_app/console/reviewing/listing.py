@@ -4,15 +4,16 @@ import datetime
 import html
 import queue
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import viser
 
 from guidance_app.batch.reviewing import Review, opened_review
 from guidance_app.console.desk import Desk, Hands
+from guidance_app.console.files import upload_html
 from guidance_app.console.pages import press
-from guidance_app.console.reviewing.outward import TimeLogs
-from guidance_app.console.widgets import Shown, buttons, notice_html
+from guidance_app.console.widgets import Shown, buttons, note_html, notice_html
 from guidance_app.language import Words
 from guidance_app.store import StoreError
 from guidance_app.store.recordings_list import ListedRecording, list_recordings
@@ -20,30 +21,41 @@ from guidance_app.view.review import thumbnail_svg
 from guidance_app.view.status import clock
 from guidance_app.view.units import area_text
 
-__all__ = ["RecordingList"]
+__all__ = ["ListWays", "RecordingList"]
 
 AT_ONCE = 5
 SHORT = 3 * 3600.0
 """Maps of recordings up to this long (s) are made unasked."""
 
 
-class RecordingList:
-    """One page of the list. ``look`` opens a recording, ``go_to`` another page of the list."""
+@dataclass(frozen=True, slots=True)
+class ListWays:
+    """Where the list leads: to a recording, to another page of the list, to the ledger of several.
 
-    def __init__(
-        self,
-        gui: viser.GuiApi,
-        hands: Hands,
-        page: int,
-        look: Callable[[Path], None],
-        go_to: Callable[[int], None],
-    ) -> None:
+    ``take`` keeps a file that comes in; ``undo`` brings back what was deleted last, None when nothing was.
+    """
+
+    look: Callable[[Path], None]
+    go_to: Callable[[int], None]
+    ledger: Callable[[], None]
+    take: Callable[[str, bytes], None]
+    undo: Callable[[], None] | None
+
+
+class RecordingList:
+    """One page of the list, with sentences ``said`` on what was just done."""
+
+    def __init__(self, gui: viser.GuiApi, hands: Hands, page: int, ways: ListWays, said: tuple[str, ...] = ()) -> None:
         self._hands = hands
         self._words = words = hands.words
         self._maps: dict[Path, Shown] = {}
         self._drawn: queue.SimpleQueue[tuple[ListedRecording, str]] = queue.SimpleQueue()
         store = hands.house.store
         found = () if store is None else list_recordings(store.root)
+        if said:
+            gui.add_html(notice_html(said))
+        if ways.undo is not None:
+            press(gui, words("Undo"), ways.undo, "orange")
         if not found:
             gui.add_html(
                 notice_html(
@@ -53,17 +65,28 @@ class RecordingList:
         first = page * AT_ONCE
         shown = found[first : first + AT_ONCE]
         for one in shown:
-            self._add(gui, one, look)
+            self._add(gui, one, ways.look)
         if len(found) > AT_ONCE:
             pages = (len(found) - 1) // AT_ONCE
             label = words("{first} to {last} of {count}", first=first + 1, last=first + len(shown), count=len(found))
             turns = (
-                (words("Newer"), lambda: go_to(max(page - 1, 0))),
-                (words("Older"), lambda: go_to(min(page + 1, pages))),
+                (words("Newer"), lambda: ways.go_to(max(page - 1, 0))),
+                (words("Older"), lambda: ways.go_to(min(page + 1, pages))),
             )
             buttons(gui, label, turns)
-        TimeLogs(gui, hands, lambda: go_to(0))
+        if found:
+            press(gui, words("Ledger of several"), ways.ledger)
+        self._token = hands.house.files.awaits(ways.take)
+        with gui.add_folder(words("Take in a recording"), expand_by_default=False):
+            said = words(
+                "A zip of a recording, or of ISOXML task data: each of its time logs becomes a recording here."
+            )
+            gui.add_html(note_html(said) + upload_html(self._token, words("Choose a file"), ".zip"))
         hands.later(lambda: self._draw_maps(shown))
+
+    def close(self) -> None:
+        """No file is awaited any more."""
+        self._hands.house.files.forget(self._token)
 
     def _add(self, gui: viser.GuiApi, one: ListedRecording, look: Callable[[Path], None]) -> None:
         picture = Shown(gui)

@@ -2,6 +2,7 @@
 
 import html
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,8 @@ from guidance_app.batch.reviewing import Review, additions_of, entry_of, keep_ad
 from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.files import Download, link_html
 from guidance_app.console.pages import press
-from guidance_app.console.reviewing.outward import add_exports
+from guidance_app.console.reviewing.handing_on import HandingOn
+from guidance_app.console.reviewing.sheets import MEDIA_TYPES
 from guidance_app.console.widgets import Choice, Shown, notice_html, rows_html
 from guidance_app.geodesy import FieldFrame
 from guidance_app.language import Words
@@ -23,16 +25,20 @@ from guidance_app.reports.quality import PassQuality, histogram, overall, pass_q
 from guidance_app.view.camera import ViewMode
 from guidance_app.view.review import COLOURINGS, ColourBy, Coloured, coloured_track, error_along
 
-__all__ = ["Looking"]
+__all__ = ["Looking", "Ways"]
 
 TRACK, OTHER = "review", "review-other"
 GREEN, VIOLET = "#2f9e44", "#7048e8"
 OTHER_COLOUR = (112, 72, 232)
-MEDIA_TYPES = {
-    ".pdf": "application/pdf",
-    ".csv": "text/csv",
-    ".xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
-}
+
+
+@dataclass(frozen=True, slots=True)
+class Ways:
+    """Where the page of one recording leads."""
+
+    back: Callable[[], None]
+    replay: Callable[[], None]
+    delete: Callable[[], None]
 
 
 class Looking:
@@ -44,8 +50,7 @@ class Looking:
         hands: Hands,
         path: Path,
         review: Review,
-        back: Callable[[], None],
-        replay: Callable[[], None],
+        ways: "Ways",
     ) -> None:
         self._gui = gui
         self._hands = hands
@@ -56,17 +61,25 @@ class Looking:
         self._by = ColourBy.ERROR
         self._wanted = True
         self._pass: int | None = None
-        press(gui, words("Back to the list"), back)
-        press(gui, words("Replay"), replay, "green")
+        press(gui, words("Back to the list"), ways.back)
+        press(gui, words("Replay"), ways.replay, "green")
         if review.truncated:
             gui.add_html(notice_html([words.say(review.truncated)]))
         self._colouring = Choice(gui, words("Colours"), tuple(words(name) for name in COLOURINGS), self._colour_by)
         self._legend = Shown(gui)
         self._table = Shown(gui)
         self._add_charts()
+        self._addresses: list[str] = []
         self._add_ledger()
-        add_exports(gui, hands, path)
+        self._handing_on = HandingOn(gui, hands, path)
+        press(gui, words("Delete this recording"), ways.delete)
         hands.later(self._show_on_map)
+
+    def close(self) -> None:
+        """Nothing of this page is offered any more."""
+        self._handing_on.close()
+        for address in self._addresses:
+            self._hands.house.files.forget(address)
 
     # --- the map ---------------------------------------------------------------------------------------------------
 
@@ -176,7 +189,9 @@ class Looking:
             content = SHEETS[ending]([entry], self._words("Ledger"), self._words)
             return Download(f"{self._review.name}{ending}", MEDIA_TYPES[ending], content)
 
-        return link_html(self._hands.house.files.offer(make), self._words("Ledger as {kind}", kind=ending[1:].upper()))
+        address = self._hands.house.files.offer(make)
+        self._addresses.append(address)
+        return link_html(address, self._words("Ledger as {kind}", kind=ending[1:].upper()))
 
 
 def _legend_html(made: Coloured, other: str) -> str:
