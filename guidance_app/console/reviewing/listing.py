@@ -78,10 +78,10 @@ class RecordingList:
             press(gui, words("Ledger of several"), ways.ledger)
         self._token = hands.house.files.awaits(ways.take)
         with gui.add_folder(words("Take in a recording"), expand_by_default=False):
-            said = words(
+            kinds = words(
                 "A zip of a recording, or of ISOXML task data: each of its time logs becomes a recording here."
             )
-            gui.add_html(note_html(said) + upload_html(self._token, words("Choose a file"), ".zip"))
+            gui.add_html(note_html(kinds) + upload_html(self._token, words("Choose a file"), ".zip"))
         hands.later(lambda: self._draw_maps(shown))
 
     def close(self) -> None:
