@@ -25,7 +25,7 @@ __all__ = ["best_heading", "edge_heading", "longest_edge", "pass_heading"]
 STEP = math.radians(0.5)
 """Between the headings that are compared."""
 
-EXACT, EXACT_PASSES = 24, 800
+EXACT, EXACT_PASSES = 20, 400
 """Headings that are cut out exactly at most, and passes of them all together."""
 
 SLACK = 1

@@ -28,7 +28,7 @@ LAP_PLACES = 60
 """Nearest places of a lap that are looked at."""
 
 LAP_WAYS = 3
-"""Places of a lap to which a transfer is looked for when no turn leads to it."""
+"""Places of a lap to which a transfer is looked for when no turn leads to it, until one fits."""
 
 ARRIVED = 0.5
 """Metres; nearer than this to the first pass's start the tractor stands on it."""
@@ -102,8 +102,12 @@ class Joiner:
             found = turner.nearest(last, poses)
             if found is not None:
                 return found
-        ways = {place: self._ways.way(last, poses[place]) for place in range(0, len(poses), -(-len(poses) // LAP_WAYS))}
-        return min(ways.items(), key=lambda each: (not each[1].fits, each[1].length))
+        tried: list[tuple[int, Turn]] = []
+        for place in range(0, len(poses), -(-len(poses) // LAP_WAYS)):
+            tried.append((place, self._ways.way(last, poses[place])))
+            if tried[-1][1].fits:
+                return tried[-1]
+        return min(tried, key=lambda each: each[1].missing)
 
     def turns(self, tasks: Sequence[Task]) -> list[Turn]:
         """The ways from each task to the next; what was found once is known."""
