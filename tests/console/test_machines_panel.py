@@ -239,7 +239,8 @@ def test_feet_and_inches(server: viser.ViserServer, tmp_path: Path) -> None:
         place.fill("Name", "Drill")
         place.fill("Working width (ft)", "10")
         place.press("Save")
-        place.says("10.00 ft")
+        place.says("is stored")
+        place.until(lambda: place.newest("Drill · 10.00 ft"))
         assert place.store.load(Implement, "Drill").document.working_width == pytest.approx(3.048)
 
 

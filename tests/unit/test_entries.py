@@ -1,6 +1,7 @@
 """Forms as values: a document shown and read again is the same; what is wrong stands under its entry."""
 
 import math
+import re
 
 import pytest
 from hypothesis import given
@@ -134,9 +135,11 @@ def test_bounds_that_are_shown_may_be_typed() -> None:
                 continue
             for units in Units:
                 for words in map(words_for, LANGUAGES):
-                    low, high = bounds_text(entry, words, units).split(" ")[0], entry
-                    view = FormView(model, (high,), {}, words, units)
-                    assert view.read(entry, low) >= (entry.low or 0.0) - 1e-9
+                    shown = re.findall(r"-?\d+(?:[.,]\d+)?", bounds_text(entry, words, units))
+                    view = FormView(model, (entry,), {}, words, units)
+                    low, high = (view.read(entry, one) for one in shown)
+                    assert low >= (entry.low or 0.0) - 1e-9
+                    assert high <= (entry.high or 0.0) + 1e-9
 
 
 def test_a_picture_gets_the_values_that_can_be_read() -> None:
