@@ -9,9 +9,10 @@ from babel.messages.pofile import read_po, write_po
 from guidance_app.language.extraction import messages_in, places_of
 from guidance_app.language.words import LANGUAGES, LOCALES, Language
 
-__all__ = ["PACKAGE", "TRANSLATED", "catalogue_path", "faults_of", "read_catalogue", "template", "updated"]
+__all__ = ["CATALOGUES", "PACKAGE", "TRANSLATED", "bring_up", "faults_of", "read_catalogue", "template", "updated"]
 
 PACKAGE = Path(__file__).parent.parent
+CATALOGUES = Path(__file__).parent / "catalogues"
 TRANSLATED: tuple[Language, ...] = tuple(language for language in LANGUAGES if language != "en")
 WIDTH = 110
 
@@ -27,14 +28,20 @@ def template() -> Catalog:
     return catalogue
 
 
-def catalogue_path(language: Language) -> Path:
-    """Where the catalogue of this language lies."""
-    return Path(__file__).parent / "catalogues" / f"{language}.po"
-
-
-def read_catalogue(language: Language) -> Catalog:
+def read_catalogue(language: Language, folder: Path = CATALOGUES) -> Catalog:
     """The catalogue as it is."""
-    return _parsed(catalogue_path(language).read_bytes(), language)
+    return _parsed((folder / f"{language}.po").read_bytes(), language)
+
+
+def bring_up(folder: Path = CATALOGUES) -> list[str]:
+    """Writes every catalogue of a folder anew with the messages of the code; what is left to do, one line each."""
+    wanted = template()
+    left = []
+    for language in TRANSLATED:
+        path = folder / f"{language}.po"
+        path.write_bytes(updated(path.read_bytes(), language, wanted))
+        left += [f"{path.name}: {fault}" for fault in faults_of(read_catalogue(language, folder), wanted)]
+    return left
 
 
 def _parsed(text: bytes, language: Language) -> Catalog:

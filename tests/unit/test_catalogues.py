@@ -1,6 +1,7 @@
 """The catalogues are whole: every message of the code is translated, with the same places in braces, and no other."""
 
 import io
+from pathlib import Path
 
 import pytest
 from babel.messages.catalog import Catalog
@@ -8,8 +9,9 @@ from babel.messages.pofile import read_po
 
 from guidance_app.language import Language
 from guidance_app.language.catalogues import (
+    CATALOGUES,
     TRANSLATED,
-    catalogue_path,
+    bring_up,
     faults_of,
     read_catalogue,
     template,
@@ -26,8 +28,16 @@ def test_every_message_is_translated_and_no_other(language: Language) -> None:
 
 @pytest.mark.parametrize("language", TRANSLATED)
 def test_a_catalogue_lies_as_the_command_writes_it(language: Language) -> None:
-    text = catalogue_path(language).read_bytes()
+    text = (CATALOGUES / f"{language}.po").read_bytes()
     assert updated(text, language, template()) == text
+
+
+def test_the_command_brings_a_folder_of_catalogues_up_to_the_code(tmp_path: Path) -> None:
+    for language in TRANSLATED:
+        text = (CATALOGUES / f"{language}.po").read_text("utf-8")
+        (tmp_path / f"{language}.po").write_text(text.replace('msgid "Working width"', 'msgid "gone"'), "utf-8")
+    assert bring_up(tmp_path) == [f"{language}.po: missing: 'Working width'" for language in TRANSLATED]
+    assert 'msgid "gone"' not in (tmp_path / "ja.po").read_text("utf-8")
 
 
 SOURCE = """
