@@ -53,3 +53,11 @@ def test_without_another_engine_there_is_no_ghost(log: FileLog) -> None:
         stage.tick_until(client, lambda: session.replay.state.ended)
         stage.tick_until(client, lambda: "/w/track_open" in client.nodes)
         assert not any(name.startswith("/w/ghost") for name in client.nodes)
+
+
+def test_the_panel_says_how_much_of_the_index_is_there(log: FileLog) -> None:
+    with playing(log) as (stage, session), stage.client() as client:
+        session.replay.indexed = 0.42
+        stage.tick_until(client, lambda: "Getting ready for jumps to any second: 42 %" in client.words())
+        session.replay.indexed = 1.0
+        stage.tick_until(client, lambda: "Getting ready" not in client.words())

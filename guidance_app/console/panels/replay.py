@@ -60,7 +60,11 @@ class Replay:
         self._passes.visible = bool(self._control.passes)
         rows = replay_rows(state.position, state.duration, state.speed, state.catching_up, self._words)
         self._rows.show(rows_html(rows))
-        self._notices.show(notice_html(self._words.say(one) for one in desk.snapshot.notices))
+        notices = [self._words.say(one) for one in desk.snapshot.notices]
+        if state.indexed is not None and state.indexed < 1.0:
+            part = int(100 * state.indexed)
+            notices.append(self._words("Getting ready for jumps to any second: {part} %", part=part))
+        self._notices.show(notice_html(notices))
 
 
 def _step(control: ReplayControl, steps: int) -> None:
