@@ -47,11 +47,13 @@ class RowButtons:
         self._gui = gui
         self._pressed = pressed
         self._made: dict[int, str] = {}
+        self._holder = gui.add_folder(None)  # rows come later, when the panel's own tab is open no more
 
     def named(self, number: int) -> str:
         """The identifier of this row's button in the page."""
         if number not in self._made:
-            handle = self._gui.add_button(f"row {number}")
+            with self._holder:
+                handle = self._gui.add_button(f"row {number}")
             self._made[number] = str(handle._impl.uuid)  # noqa: SLF001 - viser tells it nowhere else
 
             @handle.on_click

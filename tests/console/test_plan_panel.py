@@ -50,6 +50,15 @@ def tick_until(screen: Screen, client: ViserClient, true: Any) -> None:
     pytest.fail("the client has not heard of it")
 
 
+def in_the_tab_of(client: ViserClient, label: str, neighbour: str) -> bool:
+    """Whether the container of one control lies beside the other control, not in another tab."""
+    one, other = client.control(label), client.control(neighbour)
+    assert one is not None
+    assert other is not None
+    holder = client.controls[one["container_uuid"]]
+    return bool(holder["container_uuid"] == other["container_uuid"])
+
+
 def rows_of(client: ViserClient) -> list[int]:
     labels = [str(each["props"].get("label")) for each in client.controls.values()]
     return [int(label.removeprefix("row ")) for label in labels if label.startswith("row ")]
@@ -70,6 +79,7 @@ def test_plans_are_compared_shown_and_taken(server: viser.ViserServer, house: Ho
         client.press("Compare plans")
         tick_until(screen, client, lambda: client.control("Compare plans") and "in laps" in client.words())
         assert "g-best" in client.words()
+        assert in_the_tab_of(client, "row 1", "Compare plans")
         last = max(rows_of(client))
         client.press(f"row {last}")
         tick_until(screen, client, lambda: "/w/sketch/worked" in client.nodes and client.control("Take this plan"))
