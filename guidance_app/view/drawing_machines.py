@@ -55,7 +55,7 @@ def _from_the_side(drawing: Drawing, values: Values, say: Say) -> None:
 def _from_behind(drawing: Drawing, values: Values, say: Say) -> None:
     track, right, height = _number(values, "track_width"), _number(values, "antenna_right"), _antenna_height(values)
     reach = max(track / 2 + 0.5, abs(right) + 0.4)
-    box = Box((-reach, -0.55), (reach, max(CAB_TOP, height) + 0.5), 292, 4, 144, 170)
+    box = Box((-reach, -0.55), (reach, max(CAB_TOP, height) + 0.5), 292, 4, 144, 160)
     at = box.at
     _ground(drawing, box)
     for middle in (-track / 2, track / 2):
