@@ -36,7 +36,7 @@ def _from_the_side(drawing: Drawing, values: Values, say: Say) -> None:
     base, forward, height = _number(values, "wheelbase"), _number(values, "antenna_forward"), _antenna_height(values)
     front = base + BONNET
     box = Box(
-        (min(-2.1, forward - 1.2), -0.55), (max(front, forward) + 0.4, max(CAB_TOP, height) + 0.5), 4, 4, 268, 170
+        (min(-2.1, forward - 1.2), -0.55), (max(front, forward) + 0.4, max(CAB_TOP, height) + 0.5), 4, 4, 268, 160
     )
     at = box.at
     _ground(drawing, box)
