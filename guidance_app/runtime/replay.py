@@ -141,6 +141,7 @@ class ReplaySession:
         self.job = job
         self.tap = Tap()
         self._setup = Setup(job, filter_name, settings, notices, compare)
+        self._source = source
         self._timeline = timeline_of(source)
         self._engines = Engines.made_of(self._setup)
         for event in self._timeline.first:
@@ -164,6 +165,26 @@ class ReplaySession:
     def of_drive(cls, drive: RecordedDrive, speed: float = 1.0, compare: Comparison | None = None) -> "ReplaySession":
         """The drive as it was, with its own documents and filter; what it breaks off at is among the notices."""
         return cls(drive.job, drive, drive.filter_name, speed, drive.notices, drive.settings, compare=compare)
+
+    def again(self, compare: Comparison | None) -> "ReplaySession":
+        """The same from the start, not begun, beside another second engine, or none.
+
+        Raises ``ValueError`` for what documents cannot hold.
+        """
+        setup, speed = self._setup, self._pacer.speed
+        return ReplaySession(
+            setup.job, self._source, setup.filter_name, speed, setup.notices, setup.settings, compare=compare
+        )
+
+    @property
+    def compare(self) -> Comparison | None:
+        """What the second engine has else; None without one."""
+        return self._setup.compare
+
+    @property
+    def filter_name(self) -> str:
+        """The filter of the drive's own engine."""
+        return self._engines.snapshot.filter_name
 
     def make_index(self, folder: Path | None, every: float = CHECKPOINT_S) -> None:
         """Makes any second near: reads the index from this folder, or lets a process make it. Returns at once."""

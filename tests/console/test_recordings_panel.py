@@ -18,7 +18,7 @@ from guidance_app.console.files import Download, NotMadeError
 from guidance_app.console.house import House
 from guidance_app.console.screen import Screen
 from guidance_app.exchange.drives import DRIVE_WRITERS
-from guidance_app.runtime import SessionManager
+from guidance_app.runtime import ReplaySession, SessionManager
 from guidance_app.sources.file import load_log
 from guidance_app.store import SAMPLE_RECORDING, Store, copy_sample, load_job
 from guidance_app.store.recordings import open_recording
@@ -135,6 +135,28 @@ def test_a_drive_is_replayed_from_the_list(office: Office) -> None:
     office.client.press("Replay")
     office.until(lambda: office.client.control("Skip"))
     assert office.house.manager.replay is not None
+
+
+def test_a_replay_is_played_again_beside_another_filter_and_without_it(office: Office) -> None:
+    office.open_newest()
+    office.client.press("Replay")
+    office.until(lambda: office.client.control("Play again with both"))
+    office.client.press("Play again with both")
+    office.told("Change the filter")
+    first = office.house.manager.session
+    office.client.set("Filter", "None")
+    office.client.set("Antenna forward (m)", 1.25)
+    office.client.press("Play again with both")
+    office.says("as it was driven: ")
+    office.says(r"beside it: .*antenna 1\.25 m forward")
+    session = office.house.manager.session
+    assert isinstance(session, ReplaySession)
+    assert session is not first
+    assert session.compare is not None
+    office.until(lambda: session.snapshot().ghost is not None)
+    office.client.press("Play again without it")
+    office.until(lambda: office.house.manager.session is not session)
+    office.until(lambda: "as it was driven" not in office.client.words())
 
 
 def test_without_any_recording_it_says_how_one_comes(tmp_path: Path) -> None:

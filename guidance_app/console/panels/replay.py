@@ -5,9 +5,10 @@ from typing import ClassVar
 import viser
 
 from guidance_app.console.desk import Desk, Hands
+from guidance_app.console.reviewing.comparing import Comparing
 from guidance_app.console.widgets import Choice, Followed, Shown, buttons, notice_html, rows_html
 from guidance_app.language import message
-from guidance_app.runtime import ReplayControl
+from guidance_app.runtime import ReplayControl, ReplaySession
 from guidance_app.view.status import clock, replay_rows
 
 __all__ = ["Replay"]
@@ -47,6 +48,8 @@ class Replay:
         self._speed = Choice(gui, words("Speed ×"), tuple(_SPEEDS), lambda name: control.set_speed(_SPEEDS[name]))
         self._rows = Shown(gui)
         self._notices = Shown(gui)
+        session = hands.house.manager.session
+        self._comparing = Comparing(gui, hands, session) if isinstance(session, ReplaySession) else None
 
     def show(self, desk: Desk) -> None:
         """Brings button, slider and words up to where the recording is."""
@@ -65,6 +68,8 @@ class Replay:
             part = int(100 * state.indexed)
             notices.append(self._words("Getting ready for jumps to any second: {part} %", part=part))
         self._notices.show(notice_html(notices))
+        if self._comparing is not None:
+            self._comparing.show(desk)
 
 
 def _step(control: ReplayControl, steps: int) -> None:
