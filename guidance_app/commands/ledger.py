@@ -22,7 +22,13 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         help="the sheet to hand in: what was worked where, when and how well",
         description="Writes the ledger of the given recordings, or of all in the data folder of a day or a time.",
     )
-    parser.add_argument("recordings", nargs="*", type=Path, metavar="RECORDING", help="folders or zips of recordings")
+    parser.add_argument(
+        "recordings",
+        nargs="*",
+        type=Path,
+        metavar="RECORDING",
+        help="folders or zips of recordings, all of which are taken",
+    )
     parser.add_argument("--day", type=_day, metavar="YYYY-MM-DD", help="all of this day (this machine's time zone)")
     parser.add_argument(
         "--from", dest="first", type=_day, metavar="YYYY-MM-DD", help="all from this day on (this machine's time zone)"
@@ -47,13 +53,14 @@ def run(arguments: argparse.Namespace) -> int:
         raise UseError(msg)
     words = words_for(arguments.language)
     data = chosen_data_folder(arguments)
-    paths = arguments.recordings or [one.path for one in list_recordings(data) if one.summary is not None]
     choice = Choice(arguments.day or arguments.first, arguments.day or arguments.last, arguments.field)
-    found = ledger_entries(paths, data, choice, _teller(paths))
+    listed = list_recordings(data)
+    paths = arguments.recordings or [one.path for one in listed if choice.takes(one)]
+    found = ledger_entries(paths, data, _teller(paths))
     for reason in found.left_out:
         print(f"left out: {reason}", file=sys.stderr)
     if not found.entries:
-        msg = f"no recording fits: {len(paths)} looked at in {data}"
+        msg = f"no recording fits: there are {len(listed)} in {data}"
         raise UseError(msg)
     try:
         arguments.out.write_bytes(sheet(found.entries, arguments.title or words("Ledger"), words))

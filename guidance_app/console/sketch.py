@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from guidance_app.model import FloatArray
 from guidance_app.view.camera import WorldPose
-from guidance_app.view.colours import Rgb, flat_source
+from guidance_app.view.colours import Rgb, flat_source, vertex_source
 from guidance_app.view.polyline import segments
 
 __all__ = ["Sketch", "ground_point"]
@@ -166,8 +166,8 @@ class Sketch:
 
 
 def _as_shown(colours: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """What to send so that the screen shows these colours; shape (N, 3)."""
+    """What to send as colours of vertices so that the screen shows these; shape (N, 3)."""
     kinds, places = np.unique(colours, axis=0, return_inverse=True)
-    sent = np.array([flat_source((int(red), int(green), int(blue))) for red, green, blue in kinds], dtype=np.uint8)
+    sent = np.array([vertex_source((int(red), int(green), int(blue))) for red, green, blue in kinds], dtype=np.uint8)
     shown: NDArray[np.uint8] = sent[places.reshape(-1)]
     return shown

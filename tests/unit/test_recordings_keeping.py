@@ -109,27 +109,24 @@ def test_of_several_time_logs_the_damaged_one_is_left_out_and_said(tmp_path: Pat
 def test_the_ledger_takes_the_days_and_the_field_that_were_chosen(tmp_path: Path, drive: bytes) -> None:
     (folder,), _ = taken_in(tmp_path, drive, "drive.zip")
     heard: list[tuple[int, float]] = []
-    (entry,) = ledger_entries([folder], tmp_path, Choice(), lambda number, done: heard.append((number, done))).entries
-    day = day_of(entry.start)
-    assert day is not None
+    assert len(ledger_entries([folder], tmp_path, lambda number, done: heard.append((number, done))).entries) == 1
     assert heard[-1] == (0, 1.0)
-    later = day + datetime.timedelta(days=1)
-    fits = {choice: len(ledger_entries([folder], tmp_path, choice).entries) for choice in choices(day, later)}
-    assert list(fits.values()) == [1, 1, 0, 0, 0]
-
-
-def choices(day: datetime.date, later: datetime.date) -> tuple[Choice, ...]:
-    return (
+    (listed,) = list_recordings(tmp_path)
+    day = day_of(listed)
+    assert day is not None
+    before, later = day - datetime.timedelta(days=1), day + datetime.timedelta(days=1)
+    choices = (
         Choice(day, day),
         Choice(last=later),
         Choice(first=later),
-        Choice(last=day - (later - day)),
-        Choice(field="x"),
+        Choice(last=before),
+        Choice(field="elsewhere"),
     )
+    assert [choice.takes(listed) for choice in choices] == [True, True, False, False, False]
 
 
 def test_what_cannot_be_opened_is_left_out_of_the_ledger_and_said(tmp_path: Path, drive: bytes) -> None:
     (folder,), _ = taken_in(tmp_path, drive, "drive.zip")
-    found = ledger_entries([tmp_path / "nothing", folder], tmp_path, Choice())
+    found = ledger_entries([tmp_path / "nothing", folder], tmp_path)
     assert len(found.entries) == 1
     assert "there is no recording" in found.left_out[0]

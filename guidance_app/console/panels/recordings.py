@@ -8,7 +8,7 @@ import viser
 from guidance_app.batch.reviewing import Review, opened_review
 from guidance_app.batch.taking_in import taken_in
 from guidance_app.console.desk import Desk, Hands, Place
-from guidance_app.console.pages import Page, Pages
+from guidance_app.console.pages import Page, Pages, press
 from guidance_app.console.reviewing.listing import ListWays, RecordingList
 from guidance_app.console.reviewing.looking import Looking, Ways
 from guidance_app.console.reviewing.several import LedgerOfSeveral
@@ -100,13 +100,14 @@ class Recordings:
         self._pages.turn(lambda gui: self._looking(gui, path, review))
 
     def _looking(self, gui: viser.GuiApi, path: Path, review: Review) -> Page:
-        ways = Ways(lambda: self._go_to(0), lambda: self._replay(path), lambda: self._delete(path))
+        ways = Ways(lambda: self._go_to(0), lambda: self._replay(path))
         page = Looking(gui, self._hands, path, review, ways)
         store = self._hands.house.store
         others = [] if store is None else [one for one in list_recordings(store.root) if one.summary is not None]
         paths = [one.path for one in others if one.path != path]
         if paths:
             self._offer_comparison(gui, page, paths)
+        press(gui, self._hands.words("Delete this recording"), lambda: self._delete(path))
         return page
 
     def _offer_comparison(self, gui: viser.GuiApi, page: Looking, paths: list[Path]) -> None:

@@ -38,7 +38,6 @@ class Ways:
 
     back: Callable[[], None]
     replay: Callable[[], None]
-    delete: Callable[[], None]
 
 
 class Looking:
@@ -72,7 +71,6 @@ class Looking:
         self._addresses: list[str] = []
         self._add_ledger()
         self._handing_on = HandingOn(gui, hands, path)
-        press(gui, words("Delete this recording"), ways.delete)
         hands.later(self._show_on_map)
 
     def close(self) -> None:

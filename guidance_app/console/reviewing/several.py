@@ -15,7 +15,7 @@ from guidance_app.console.pages import press
 from guidance_app.console.reviewing.sheets import MEDIA_TYPES
 from guidance_app.console.widgets import Shown, buttons, notice_html, progress_html
 from guidance_app.reports import SHEETS
-from guidance_app.store.recordings_list import ListedRecording, list_recordings
+from guidance_app.store.recordings_list import list_recordings
 from guidance_app.view.units import area_text
 
 __all__ = ["LedgerOfSeveral"]
@@ -31,7 +31,7 @@ class LedgerOfSeveral:
         self._words = words = hands.words
         self._data = data
         self._found = [one for one in list_recordings(data) if one.summary is not None and not one.being_written]
-        self._days = sorted({day for one in self._found if (day := _day(one)) is not None}, reverse=True)
+        self._days = sorted({day for one in self._found if (day := day_of(one)) is not None}, reverse=True)
         self._fields = sorted({one.summary.field for one in self._found if one.summary and one.summary.field})
         self._addresses: list[str] = []
         self._done: float | None = None
@@ -96,10 +96,10 @@ class LedgerOfSeveral:
 
     def _gather(self) -> None:
         choice = self._chosen()
-        paths = [one.path for one in self._found if _may_be(one, choice)]
+        paths = [one.path for one in self._found if choice.takes(one)]
         self.close()
         try:
-            found = ledger_entries(paths, self._data, choice, lambda number, done: self._tell(number, done, len(paths)))
+            found = ledger_entries(paths, self._data, lambda number, done: self._tell(number, done, len(paths)))
             self._said = self._sheets(found)
         except SENTENCES as error:
             self._said = notice_html([note_said(error, self._words)])
@@ -129,18 +129,3 @@ class LedgerOfSeveral:
         address = self._hands.house.files.offer(make)
         self._addresses.append(address)
         return link_html(address, self._words("Ledger as {kind}", kind=ending[1:].upper()))
-
-
-def _day(one: ListedRecording) -> datetime.date | None:
-    """The day in this machine's time zone on which a recording began; None where its time is none."""
-    if one.summary is None:
-        return None
-    try:
-        return day_of(datetime.datetime.fromisoformat(one.summary.started_utc))
-    except ValueError:
-        return None
-
-
-def _may_be(one: ListedRecording, choice: Choice) -> bool:
-    """Whether it must be opened. Days are asked of the receiver's clock; a machine may have stood on another day."""
-    return one.summary is not None and choice.field in (None, one.summary.field)
