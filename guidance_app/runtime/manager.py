@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from guidance_app.documents import Implement, Job, Receiver, Settings, Tractor
 from guidance_app.language import sentence
-from guidance_app.model import Chunk, Command, Snapshot, SourceDown, SourceUp
+from guidance_app.model import Chunk, Command, SessionState, Snapshot, SourceDown, SourceUp
 from guidance_app.runtime.live import LiveSession
 from guidance_app.runtime.session import Hearer, Session
 from guidance_app.runtime.tap import Tap
@@ -180,8 +180,14 @@ class SessionManager:
                 log.exception("a hearer failed at the change of sessions")
 
     def close(self) -> None:
-        """Ends the session in use; none follows."""
+        """Ends the session in use; none follows. A drive that nobody ended can be gone on with at the next start.
+
+        So a machine that is shut down with the ignition key loses no drive, however it is told to stop.
+        """
         with self._lock:
             self._closed = True
             session = self._session
-        session.close()
+        if isinstance(session, LiveSession):
+            session.close(ended=session.snapshot().state is SessionState.ENDED)
+        else:
+            session.close()

@@ -15,7 +15,7 @@ import pytest
 from guidance_app.cli import main
 from guidance_app.model import SourceDown, SourceUp
 from guidance_app.runtime.live import INTERRUPTED
-from guidance_app.store.recordings import PACKED, open_recording
+from guidance_app.store.recordings import open_recording
 from guidance_app.store.recordings_list import list_recordings, resumable
 
 ROOT = Path(__file__).parent.parent.parent
@@ -75,8 +75,10 @@ def test_a_killed_program_goes_on_with_its_drive(tmp_path: Path) -> None:
     (listed,) = list_recordings(tmp_path)
     assert listed.path == found.path
     assert listed.summary is not None
-    assert listed.summary.ended
-    assert (listed.path / PACKED).is_file()
+    assert not listed.summary.ended
+    again = resumable(tmp_path)
+    assert again is not None
+    assert again.path == found.path
     drive = open_recording(listed.path)
     kinds = [event for event in drive.events if isinstance(event, SourceUp | SourceDown)]
     assert [type(event) for event in kinds[:3]] == [SourceUp, SourceDown, SourceUp]
