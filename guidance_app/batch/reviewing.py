@@ -1,19 +1,16 @@
 """Recordings opened for looking back: their columns, kept beside the data so that the second time takes a moment.
 
-What is kept is named by the recording's content and by this program's version: another program makes it anew, and a
-kept file that is damaged is made anew too.
+A drive that is recorded keeps them while it is driven; other recordings go through the engine when they are opened
+first.
 """
 
 import json
-import zipfile
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
-import numpy as np
 import shapely
 
-from guidance_app import __version__
 from guidance_app.batch.drive_log import gathered
 from guidance_app.boundary import frame_of, polygon_in
 from guidance_app.documents import Job
@@ -22,13 +19,11 @@ from guidance_app.model import CoverageTotals, DriveLog, FloatArray
 from guidance_app.recording import RecordedDrive
 from guidance_app.reports.ledger import Additions, LedgerEntry, ledger_entry
 from guidance_app.store.files import StoreError, write_atomically
-from guidance_app.store.recordings import open_recording
+from guidance_app.store.recordings import job_in, opened, read_recording
+from guidance_app.store.reviews import KeptColumns, keep_columns, kept_columns, place_of
 
 __all__ = ["Review", "additions_of", "entry_of", "keep_additions", "opened_review", "review_of"]
 
-KEPT = Path(".derived") / "reviews"
-LAYOUT = 1
-"""Of a kept file; changes with the columns."""
 ADDITIONS = "ledger.json"
 
 
@@ -56,15 +51,19 @@ class Review:
 
 def opened_review(path: Path, data: Path, progress: Callable[[float], None] | None = None) -> Review:
     """The review of a recording's folder or zip. Raises ``StoreError``; ``progress`` hears from 0 to 1."""
-    drive = open_recording(path)
-    place = data / KEPT / f"{drive.digest[:40]}-{__version__}-{LAYOUT}.npz"
-    kept = _kept(place)
+    files = read_recording(path)
+    place = place_of(data, files)
+    kept = kept_columns(place)
+    if kept is not None and kept.whole:
+        if progress is not None:
+            progress(1.0)
+        return Review(files.name, job_in(files), kept.log, kept.totals, None)
+    drive = opened(files)
     if kept is None:
-        kept = _made(drive, progress)
-        _keep(place, *kept)
-    elif progress is not None:
-        progress(1.0)
-    return Review(drive.name, drive.job, kept[0], kept[1], drive.truncated)
+        log, totals = _made(drive, progress)
+        kept = KeptColumns(log, totals, whole=drive.truncated is None)
+        keep_columns(place, kept)
+    return Review(drive.name, drive.job, kept.log, kept.totals, drive.truncated)
 
 
 def review_of(drive: RecordedDrive, progress: Callable[[float], None] | None = None) -> Review:
@@ -76,34 +75,6 @@ def review_of(drive: RecordedDrive, progress: Callable[[float], None] | None = N
 def _made(drive: RecordedDrive, progress: Callable[[float], None] | None) -> tuple[DriveLog, CoverageTotals]:
     gathering = gathered(drive.job, drive.events, drive.filter_name, drive.settings, progress)
     return gathering.log(), gathering.totals or CoverageTotals()
-
-
-def _kept(place: Path) -> tuple[DriveLog, CoverageTotals] | None:
-    """What was kept; None where there is nothing, or nothing that can be read."""
-    if not place.is_file():
-        return None
-    try:
-        with place.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
-            columns = {name: file[name] for name in DriveLog.columns()}
-            facts = json.loads(str(file["facts"]))
-            totals = CoverageTotals(**facts["totals"])
-            origin = facts["origin_deg"]
-    except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile, EOFError):
-        return None
-    return DriveLog(**columns, origin_deg=None if origin is None else (origin[0], origin[1])), totals
-
-
-def _keep(place: Path, log: DriveLog, totals: CoverageTotals) -> None:
-    """Keeps the columns; where that cannot be, the next time takes as long again, and nothing else is lost."""
-    facts = json.dumps({"totals": asdict(totals), "origin_deg": log.origin_deg})
-    columns = {name: getattr(log, name) for name in DriveLog.columns()}
-    unfinished = place.with_name(place.name + ".part.npz")
-    try:
-        place.parent.mkdir(parents=True, exist_ok=True)
-        np.savez(unfinished, facts=np.array(facts), **columns)
-        unfinished.replace(place)
-    except OSError:
-        unfinished.unlink(missing_ok=True)
 
 
 # --- what the driver adds --------------------------------------------------------------------------------------------

@@ -120,7 +120,7 @@ class LiveSession:
     def _take_again(self, drive: RecordedDrive, progress: Callable[[float], None] | None) -> None:
         for number, event in enumerate(drive.events):
             self._links.setdefault(_link_of(event))
-            stepped(self._engine, event)
+            stepped(self._engine, event, None if self.recorder is None else self.recorder.look_at)
             if progress is not None and number % TOLD_EVERY == 0:
                 progress(number / len(drive.events))
         self._begin = self._last = drive.duration
@@ -172,9 +172,7 @@ class LiveSession:
         event = self._in_order(event)
         if self.recorder is not None:
             self.recorder.take(event)
-        snapshot = stepped(self._engine, event)
-        if self.recorder is not None:
-            self.recorder.look_at(snapshot)
+        snapshot = stepped(self._engine, event, None if self.recorder is None else self.recorder.look_at)
         self._publish(snapshot)
 
     def _in_order(self, event: Event) -> Event:

@@ -18,10 +18,12 @@ from guidance_app.estimation.filter import FilterSettings
 from guidance_app.language import sentence
 from guidance_app.model import Chunk, Commanded, Event, Snapshot
 from guidance_app.recording import LineWriter, RecordedDrive, RecordingMeta, read_lines
+from guidance_app.runtime.columns import LiveColumns
 from guidance_app.store.files import StoreError, why
-from guidance_app.store.recordings import RecordingSummary
+from guidance_app.store.recordings import RecordingSummary, read_recording
 from guidance_app.store.recordings_list import summary_of
 from guidance_app.store.recordings_writing import RecordingFolder
+from guidance_app.store.reviews import keep_columns, place_of
 
 __all__ = ["FLUSH_EVERY", "SYNC_EVERY", "Recorder", "new_recording"]
 
@@ -70,6 +72,7 @@ class Recorder:
         self._last = past.duration
         self._flushed_to = past.duration
         self._snapshot: Snapshot | None = None
+        self._columns = LiveColumns()
         self._trouble: str | None = None
         self._shortage: str | None = None
         self._given_up = False
@@ -83,8 +86,9 @@ class Recorder:
         self._events.put(event)
 
     def look_at(self, snapshot: Snapshot) -> None:
-        """What is known now, for the summary."""
+        """What is known now, for the summary and the columns. Every snapshot, so that no fix is missing."""
         self._snapshot = snapshot
+        self._columns.look_at(snapshot)
 
     @property
     def notice(self) -> str | None:
@@ -118,11 +122,13 @@ class Recorder:
             log.exception("the recorder failed")
             self._trouble = sentence("This drive is no longer recorded: the recorder failed. Driving goes on.")
         finally:
+            self._columns.close()
             self._folder.close()
 
     def _flush(self) -> None:
         """Hands over what came since; what the disk does not take waits."""
         self._gather()
+        self._columns.flush()
         if not self._waiting:
             return
         try:
@@ -234,8 +240,14 @@ class Recorder:
                 return
             self._folder.pack()
             self._folder.write_summary(self._summary(ended=True))
+            self._keep_columns()
         except StoreError as error:
             log.warning("%s", error)  # it stays as it is, whole and unpacked
+
+    def _keep_columns(self) -> None:
+        columns = self._columns.whole()
+        if columns is not None:
+            keep_columns(place_of(self.path.parent.parent, read_recording(self.path)), columns)
 
 
 def new_recording(

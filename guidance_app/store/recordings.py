@@ -35,6 +35,7 @@ __all__ = [
     "RecordingSummary",
     "is_recording",
     "is_recording_zip",
+    "job_in",
     "job_of_recording",
     "open_recording",
     "opened",
@@ -133,6 +134,15 @@ def job_of_recording(folder: Path) -> Job:
         raise StoreError(msg) from error
     except RecordingError as error:
         msg = sentence("{folder} cannot be read: {reason}", folder=folder, reason=str(error))
+        raise StoreError(msg) from error
+
+
+def job_in(files: RecordingFiles) -> Job:
+    """The documents that a recorded drive began with, out of its contents. Raises ``StoreError``."""
+    try:
+        return _meta_of(files.session).job
+    except RecordingError as error:
+        msg = sentence("{folder} cannot be read: {reason}", folder=files.name, reason=error.args[0])
         raise StoreError(msg) from error
 
 

@@ -6,13 +6,16 @@ import numpy as np
 import pytest
 from support.recordings import driven_live
 
-from guidance_app.batch.reviewing import KEPT, additions_of, entry_of, keep_additions, opened_review
+from guidance_app.batch.drive_log import drive_log
+from guidance_app.batch.reviewing import additions_of, entry_of, keep_additions, opened_review
 from guidance_app.cli import main
 from guidance_app.model import DriveLog
 from guidance_app.reports.ledger import Additions
 from guidance_app.sources.file import load_log
 from guidance_app.store import SAMPLE_RECORDING, Store, StoreError, copy_sample, load_job
+from guidance_app.store.recordings import open_recording
 from guidance_app.store.recordings_list import list_recordings
+from guidance_app.store.reviews import KEPT, kept_columns
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +38,18 @@ def same(one: DriveLog, other: DriveLog) -> bool:
     )
 
 
+def test_what_was_kept_while_driving_is_what_the_recording_gives(data: Path) -> None:
+    (place,) = (data / KEPT).iterdir()
+    kept = kept_columns(place)
+    assert kept is not None
+    drive = open_recording(recording(data))
+    assert same(kept.log, drive_log(drive))
+    assert kept.log.origin_deg == drive_log(drive).origin_deg
+
+
 def test_the_second_opening_gives_the_same_without_driving_again(data: Path) -> None:
+    for kept in (data / KEPT).iterdir():
+        kept.unlink()
     told: list[float] = []
     first = opened_review(recording(data), data, told.append)
     again = opened_review(recording(data), data)
