@@ -5,7 +5,7 @@ import importlib
 
 __all__ = ["add_parser", "run"]
 
-BENCHES = ("engine", "growth", "latency", "filters", "plan", "recording")
+BENCHES = ("engine", "growth", "latency", "filters", "plan", "recording", "review")
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:

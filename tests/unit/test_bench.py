@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from guidance_app.bench import growth, latency, recording
+from guidance_app.bench import growth, latency, recording, review
 from guidance_app.bench.browser import chromium_path
 from guidance_app.bench.errors import BenchError
 from guidance_app.bench.growth import DrivenSession, Growth, Hour, Joining, Stretch, memory_in_use
@@ -181,3 +181,9 @@ def test_recording_is_measured_from_its_cost_to_its_jumps() -> None:
     assert 0.1 < rows["size when ended"].value < 4.0
     assert rows["open, second time"].value > 0.0
     assert rows["jump, longest, first time"].value >= rows["jump, median, first time"].value > 0.0
+
+
+def test_a_recorded_drive_opens_for_review_at_once_and_one_from_elsewhere_too() -> None:
+    rows = {row.quantity: row.value for row in review.measured(0.03)}
+    assert 0.0 < rows["open, first time, driven here"] < rows["open, first time, from elsewhere"]
+    assert rows["open, second time"] < rows["open, first time, from elsewhere"]
