@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from guidance_app.documents import Job
+from guidance_app.language import message
 from guidance_app.model import SegmentKind
 from guidance_app.simulation.job import JobSettings, LossOfFix, SimulatedEpoch, simulated_epochs
 from guidance_app.simulation.sample import sample_job
@@ -72,7 +73,7 @@ def _session(job: Job, seed: int, epochs: list[SimulatedEpoch]) -> bytes:
         "kind": "session",
         "name": "Sample recording",
         "simulated": True,
-        "notice": "Simulated: an invented tractor on an invented field.",
+        "notice": message("Simulated: an invented tractor on an invented field."),
         "log": LOG_NAME,
         "operation": job.operation.name if job.operation is not None else None,
         "field": job.field.name if job.field is not None else None,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from platformdirs import user_data_dir
 
-from guidance_app.language import sentence
+from guidance_app.language import message, sentence
 from guidance_app.store.files import StoreError, read_bounded, why
 
 __all__ = ["SAMPLE_OPERATION", "SAMPLE_RECORDING", "copy_sample", "data_folder", "sample_folder", "simulated_notice"]
@@ -70,7 +70,7 @@ def simulated_notice(log: Path) -> str | None:
     if not isinstance(members, dict) or members.get("simulated") is not True:
         return None
     notice = members.get("notice")
-    return notice if isinstance(notice, str) and notice else "This recording is simulated."
+    return notice if isinstance(notice, str) and notice else message("This recording is simulated.")
 
 
 def copy_sample(to: Path) -> Path:
