@@ -260,7 +260,7 @@ def test_the_ledger_of_several_drives(office: Office) -> None:
     office.client.press("Ledger of several")
     office.until(lambda: office.client.control("Make the ledger"))
     office.client.set("Field", "Sample field")
-    office.client.press("any day")
+    office.client.press("Any day")
     office.client.press("Make the ledger")
     office.says("2 drives")
     assert made_by(office, "Ledger as PDF").data.startswith(b"%PDF")

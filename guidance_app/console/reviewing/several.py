@@ -37,8 +37,9 @@ class LedgerOfSeveral:
         self._done: float | None = None
         self._said = ""
         press(gui, words("Back to the list"), back)
+        self._shown = Shown(gui)
         names = [words.date(day) for day in self._days]
-        any_day = words("any day")
+        any_day = words("Any day")
         quick = ((words("Newest day"), self._newest_day), (words("This season"), self._season), (any_day, self._all))
         buttons(gui, words("Drives of"), quick)
         self._first: Any = gui.add_dropdown(words("From"), (any_day, *names))
@@ -46,7 +47,6 @@ class LedgerOfSeveral:
         self._field: Any = gui.add_dropdown(words("Field"), (words("every field"), *self._fields))
         self._title = gui.add_text(words("Above the sheet"), words("Ledger"))
         press(gui, words("Make the ledger"), self._make, "green")
-        self._shown = Shown(gui)
         self._newest_day()
 
     def show(self, desk: Desk) -> None:
