@@ -334,11 +334,23 @@ class Screen:
         client.panels.append(HEAD[place](gui, hands))
         tabs = gui.add_panel() if place is Place.DRIVE else gui.add_tab_group()
         for name, panel in (PANELS if place is Place.DRIVE else SETUP_PANELS).items():
-            if name != "replay" or hands.replay is not None:
+            if self._is_wanted(name):
                 with tabs.add_tab(hands.words(panel.title)):
                     client.panels.append(panel(gui, hands))
         if isinstance(tabs, viser.PanelHandle):
             tabs.dock_below(main)
+
+    def _is_wanted(self, name: str) -> bool:
+        """Whether a panel has anything to do in this drive: there is a recording, a plan, or none."""
+        match name:
+            case "replay":
+                return self._session.replay is not None
+            case "rest":
+                return self._session.snapshot().plan is not None
+            case "line":
+                return self._session.snapshot().plan is None
+            case _:
+                return True
 
     def _title(self, words: Words) -> str:
         field = self._job.field.name if self._job.field is not None else words("No field")

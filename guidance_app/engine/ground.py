@@ -8,7 +8,7 @@ import shapely
 from guidance_app.boundary import frame_of, polygon_in
 from guidance_app.documents import Job, Method
 from guidance_app.geodesy import FieldFrame
-from guidance_app.guidance.family import ParallelLines, PassFamily
+from guidance_app.guidance.family import PassFamily
 from guidance_app.guidance.itinerary import passes_of
 from guidance_app.guidance.planning import PlanError, plan_operation
 from guidance_app.guidance.replanning import Standing, replan
@@ -17,7 +17,7 @@ from guidance_app.guidance.wishes import request_of
 from guidance_app.language import sentence
 from guidance_app.model import FloatArray, Pass, Plan
 
-__all__ = ["Ground", "ground_beside", "ground_of", "mainland_of", "rest_of", "shown_beside"]
+__all__ = ["Ground", "ground_of", "ground_with", "mainland_of", "rest_of", "shown_beside"]
 
 SHOWN_TO_A_SIDE = 12
 """Without a field so many passes are shown to either side of the target."""
@@ -73,9 +73,8 @@ def rest_of(ground: Ground, done: frozenset[int], standing: Standing) -> Ground 
     return replace(ground, plan=plan, passes=passes_of(plan), notices=plan.warnings)
 
 
-def ground_beside(ground: Ground, stretch: tuple[tuple[float, float], tuple[float, float]], spacing: float) -> Ground:
-    """The same ground with lines beside a stretch that was driven, from its start to its end."""
-    family = ParallelLines(*stretch, spacing)
+def ground_with(ground: Ground, family: PassFamily) -> Ground:
+    """The same ground with the passes of a family instead of what there was to guide along."""
     return Ground(
         ground.frame,
         ground.polygon,

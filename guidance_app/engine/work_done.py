@@ -10,10 +10,12 @@ from dataclasses import replace
 from typing import Any
 
 from guidance_app.documents import HitchKind, Job
-from guidance_app.engine.ground import Ground, ground_beside, ground_of, mainland_of, rest_of, shown_beside
+from guidance_app.engine.ground import Ground, ground_of, ground_with, mainland_of, rest_of, shown_beside
+from guidance_app.engine.line_drawing import AT_ONCE, LineDrawing, line_at_once
 from guidance_app.estimation.reference_point import carried, offset_point
 from guidance_app.geodesy import FieldFrame
 from guidance_app.guidance.coverage import Coverage
+from guidance_app.guidance.family import GuidanceLineError, ParallelLines, PassFamily
 from guidance_app.guidance.pass_work import PassWork
 from guidance_app.guidance.request import PlanError
 from guidance_app.guidance.straight import StraightStretch
@@ -23,9 +25,12 @@ from guidance_app.guidance.turning import Turning, turning_of
 from guidance_app.guidance.work import WorkSwitch
 from guidance_app.language import message, sentence
 from guidance_app.model import (
+    BeginLine,
     Command,
     CoverageTotals,
+    DropLine,
     DropOffset,
+    EndLine,
     Guidance,
     LineHere,
     Nudge,
@@ -59,6 +64,7 @@ class WorkDone:
         self._version = 1
         self._shown_around = 0
         self._stretch = StraightStretch()
+        self._drawing: LineDrawing | None = None
         self._tracker: Tracker | None = None
         self._switch = WorkSwitch(job.implement.working_width)
         self._track = TrackTrail()
@@ -93,6 +99,7 @@ class WorkDone:
         other = copy.copy(self)
         vars(other).update(
             _stretch=self._stretch.fork(),
+            _drawing=None if self._drawing is None else self._drawing.fork(),
             _tracker=None if self._tracker is None else self._tracker.fork(),
             _track=self._track.fork(),
             _pass_work=self._pass_work.fork(),
@@ -105,10 +112,12 @@ class WorkDone:
 
         While nothing is to be counted the implement is taken as lifted, whatever switches it.
         """
-        if self._tracker is None:
-            self._look_for_a_line(pose)
         guided = self._guided_point(pose, implement)
         self._guided = pose, guided
+        if self._drawing is not None:
+            self._drawing.step(guided)
+        elif self._tracker is None:
+            self._look_for_a_line(pose)
         if self._tracker is not None:
             self._guide(self._tracker, pose, guided)
             self._show_around_target()
@@ -166,9 +175,46 @@ class WorkDone:
                 self._switch = self._switch.with_mode(command.mode)
             case SetSection():
                 return self._switch_section(command)
+            case BeginLine() | EndLine() | DropLine():
+                return self._draw_line(command)
             case _:
                 return self._line_command(command, arrival)
         return None
+
+    def _draw_line(self, command: BeginLine | EndLine | DropLine) -> str | None:
+        """A guidance line of the driver's own, instead of the first straight stretch."""
+        if self._ground is None or self._guided is None:
+            return sentence("Not yet: there is no position.")
+        if self._ground.plan is not None:
+            return sentence("This drive follows a plan: start one without a plan to draw a line.")
+        pose, point = self._guided
+        spacing = self._job.implement.spacing
+        try:
+            match command:
+                case BeginLine() if command.kind in AT_ONCE:
+                    heading = pose.heading if command.heading_deg is None else math.radians(command.heading_deg)
+                    self._guide_beside(line_at_once(command.kind, point, heading, spacing))
+                case BeginLine():
+                    self._drawing = LineDrawing(command.kind, point)
+                case EndLine():
+                    if self._drawing is None:
+                        return sentence("No line has been begun: press A first.")
+                    self._guide_beside(self._drawing.family(point, spacing))
+                case DropLine():
+                    self._drawing = None
+        except GuidanceLineError as error:
+            return error.args[0] if isinstance(error.args[0], str) else str(error)
+        return None
+
+    def _guide_beside(self, family: PassFamily) -> None:
+        """These passes instead of what was guided along before; offsets belong to the old ones and go with them."""
+        assert self._ground is not None
+        self._drawing = None
+        self._ground = ground_with(self._ground, family)
+        self._tracker = Tracker(family, self._job.implement.spacing, field=self._ground.polygon, behind=self._behind)
+        self._guidance = self._turning = None
+        self._shown_around = 0
+        self._version += 1
 
     def _switch_section(self, command: SetSection) -> str | None:
         count = self._job.implement.sections
@@ -276,6 +322,7 @@ class WorkDone:
             "guidance": self._guidance,
             "working": self._working,
             "sections": self._sections,
+            "line_begun": None if self._drawing is None else self._drawing.kind,
             "work_mode": self._switch.mode,
             "totals": self._coverage.totals,
             "pass_totals": self._pass_totals,
@@ -306,12 +353,7 @@ class WorkDone:
         stretch = self._stretch.step(pose)
         if stretch is None or self._ground is None:
             return
-        self._ground = ground_beside(self._ground, stretch, self._job.implement.spacing)
-        self._version += 1
-        if self._ground.family is not None:
-            field = self._ground.polygon
-            spacing = self._job.implement.spacing
-            self._tracker = Tracker(self._ground.family, spacing, field=field, behind=self._behind)
+        self._guide_beside(ParallelLines(*stretch, self._job.implement.spacing))
 
     def _show_around_target(self) -> None:
         """Without a field the shown lines follow the tractor."""

@@ -7,15 +7,19 @@ from enum import StrEnum
 from guidance_app.model.wire import RECEIVER, Chunk
 
 __all__ = [
+    "LINE_KINDS",
     "POSITION_OFFSETS",
     "ApplyRollZero",
     "BeginInitialisation",
+    "BeginLine",
     "BeginRollZero",
     "CancelRollZero",
     "Command",
     "Commanded",
+    "DropLine",
     "DropOffset",
     "EndDrive",
+    "EndLine",
     "Event",
     "FinishRollZero",
     "LineHere",
@@ -38,6 +42,10 @@ __all__ = [
     "TakePass",
     "WorkMode",
 ]
+
+
+LINE_KINDS = ("ab", "a-plus", "curve", "pivot", "last-pass")
+"""Guidance lines for driving without a plan."""
 
 
 class WorkMode(StrEnum):
@@ -204,6 +212,36 @@ class ReplanRest:
 
 
 @dataclass(frozen=True, slots=True)
+class BeginLine:
+    """A guidance line begins where the tractor is: ``ab``, ``curve`` and ``pivot`` are driven until ``EndLine``.
+
+    ``a-plus`` (through here, in ``heading_deg`` or where the tractor points) and ``last-pass`` are there at once.
+    """
+
+    kind: str
+    heading_deg: float | None = None
+
+    def __post_init__(self) -> None:
+        """Checks kind and heading."""
+        if self.kind not in LINE_KINDS:
+            msg = f"guidance line: {self.kind!r} is none of {', '.join(LINE_KINDS)}"
+            raise ValueError(msg)
+        if self.heading_deg is not None and not 0 <= self.heading_deg <= 360:
+            msg = f"heading: {self.heading_deg:g} degrees is not from 0 to 360"
+            raise ValueError(msg)
+
+
+@dataclass(frozen=True, slots=True)
+class EndLine:
+    """The guidance line that is driven ends here, and guides from now on."""
+
+
+@dataclass(frozen=True, slots=True)
+class DropLine:
+    """The guidance line that is driven is given up; what guided before guides on."""
+
+
+@dataclass(frozen=True, slots=True)
 class BeginRollZero:
     """The first drive along a line begins, to find the roll sensor's zero."""
 
@@ -252,6 +290,9 @@ Command = (
     | EndDrive
     | SetSection
     | ReplanRest
+    | BeginLine
+    | EndLine
+    | DropLine
     | BeginRollZero
     | NextRollZeroDrive
     | FinishRollZero

@@ -89,6 +89,7 @@ class Snapshot:
     switched on, the leftmost first; ``pass_totals`` is the work on the target pass, where ``left`` is what was driven
     by and not worked. ``roll_zero`` is a calibration under way; ``roll_zero_deg`` the zero in use. ``ghost`` is there
     in a replay that compares.
+    ``line_begun`` is the kind of the guidance line that is being drawn by driving, None while there is none.
     """
 
     sequence: int
@@ -121,6 +122,7 @@ class Snapshot:
     initialising: Initialising | None = None
     initialised: Initialised | None = None
     sections: tuple[bool, ...] = (True,)
+    line_begun: str | None = None
     pass_totals: CoverageTotals | None = None
     roll_zero: RollZeroProgress | None = None
     roll_zero_deg: float = 0.0

@@ -3,6 +3,7 @@
 from guidance_app.console.desk import Panel, Place
 from guidance_app.console.panels.fields import Fields
 from guidance_app.console.panels.info import Info
+from guidance_app.console.panels.line import Line
 from guidance_app.console.panels.machines import Machines
 from guidance_app.console.panels.menu import Menu
 from guidance_app.console.panels.operations import Operations
@@ -27,6 +28,7 @@ HEAD: dict[Place, type[Panel]] = {Place.DRIVE: Summary, Place.SETUP: Yard}
 PANELS: dict[str, type[Panel]] = {
     "work": Work,
     "rest": Rest,
+    "line": Line,
     "position": Position,
     "views": Views,
     "replay": Replay,

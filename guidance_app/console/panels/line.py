@@ -1,0 +1,89 @@
+"""The line panel: how to drive without a plan, along a line that the driver draws by driving."""
+
+from typing import ClassVar
+
+import viser
+
+from guidance_app.console.desk import Desk, Hands
+from guidance_app.console.widgets import Choice, Shown, notice_html
+from guidance_app.language import message
+from guidance_app.model import BeginLine, DropLine, EndLine
+
+__all__ = ["Line"]
+
+NAMES = {
+    message("AB"): "ab",
+    message("A+"): "a-plus",
+    message("Curve"): "curve",
+    message("Pivot"): "pivot",
+    message("Last pass"): "last-pass",
+}
+HELP = {
+    "ab": message("Straight passes: press Begin at A, drive, press End at B."),
+    "a-plus": message("Straight passes through here, in the heading typed below or where the tractor points."),
+    "curve": message("Passes beside a curve: press Begin, drive it, press End."),
+    "pivot": message("Circles: press Begin, drive a part of the circle, press End."),
+    "last-pass": message("Drive the first pass as you like; each next one runs beside the one before."),
+}
+AT_ONCE = frozenset({"a-plus", "last-pass"})
+
+
+class Line:
+    """Chooses a kind of line, then begins and ends it."""
+
+    title: ClassVar[str] = message("Line")
+
+    def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
+        self._hands = hands
+        self._words = words = hands.words
+        self._kind = "ab"
+        self._kinds = {words(name): kind for name, kind in NAMES.items()}
+        self._choice = Choice(gui, words("Kind"), tuple(self._kinds), self._choose)
+        self._help = Shown(gui)
+        self._heading = gui.add_text(words("Heading (°)"), "", hint=words("0 to 360; empty: where the tractor points"))
+        self._begin = gui.add_button(words("Begin here (A)"), color="green")
+        self._end = gui.add_button(words("End here (B)"), color="green", visible=False)
+        self._drop = gui.add_button(words("Give up"), color="gray", visible=False)
+
+        @self._begin.on_click
+        async def _(_: object) -> None:
+            self._start()
+
+        @self._end.on_click
+        async def _(_: object) -> None:
+            hands.post(EndLine())
+
+        @self._drop.on_click
+        async def _(_: object) -> None:
+            hands.post(DropLine())
+
+    def _choose(self, name: str) -> None:
+        self._kind = self._kinds[name]
+
+    def _start(self) -> None:
+        heading: float | None = None
+        if self._kind == "a-plus" and self._heading.value.strip():
+            try:
+                heading = self._words.parse_number(self._heading.value)
+                command = BeginLine(self._kind, heading)
+            except ValueError:
+                said = self._words("'{text}' is no heading: type 0 to 360 degrees.", text=self._heading.value)
+                self._hands.tell(self._words("Not done"), said, bad=True)
+                return
+        else:
+            command = BeginLine(self._kind)
+        self._hands.post(command)
+
+    def show(self, desk: Desk) -> None:
+        """Brings buttons and words up to the line that is drawn."""
+        words = self._words
+        begun = desk.snapshot.line_begun
+        names = {kind: words(name) for name, kind in NAMES.items()}
+        self._choice.show(names[begun or self._kind])
+        planned = desk.snapshot.plan is not None
+        said = words("This drive follows a plan: start one without a plan to draw a line.") if planned else ""
+        self._help.show(notice_html([said or words(HELP[begun or self._kind])]))
+        self._heading.visible = self._kind == "a-plus" and begun is None and not planned
+        self._begin.visible = begun is None and not planned
+        self._begin.label = words("Guide from here") if self._kind in AT_ONCE else words("Begin here (A)")
+        self._end.visible = self._drop.visible = begun is not None
