@@ -106,13 +106,3 @@ def test_the_rest_is_counted_and_commands_are_posted(server: viser.ViserServer, 
         session.until_posted(command)
     house.manager.close()
     house.close()
-
-
-def test_without_a_plan_the_rest_says_so(server: viser.ViserServer) -> None:
-    house = House(SessionManager(SetSession(field_snapshot(plan=None, passes=()))))
-    screen = Screen(server, house)
-    screen.attach()
-    with viser_client(server) as client:
-        tick_until(screen, client, lambda: "There is no plan" in client.words())
-    house.manager.close()
-    house.close()

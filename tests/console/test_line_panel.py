@@ -1,0 +1,73 @@
+"""The line panel: there without a plan alone, and every button posts what it says."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import pytest
+import viser
+from support.snapshots import SetSession, field_snapshot
+from support.stage import Stage, running_viser
+from support.viser_client import ViserClient
+
+from guidance_app.model import BeginLine, Command, DropLine, EndLine
+
+
+@pytest.fixture
+def server() -> Iterator[viser.ViserServer]:
+    """viser on a free port."""
+    with running_viser() as running:
+        yield running
+
+
+@pytest.fixture
+def stage(server: viser.ViserServer) -> Stage:
+    """A drive without a plan."""
+    return Stage(server, SetSession(field_snapshot(plan=None, passes=())))
+
+
+def posted(stage: Stage, client: ViserClient, press: Callable[[], None]) -> Command:
+    before = len(stage.session.commands)
+    press()
+    stage.tick_until(client, lambda: len(stage.session.commands) > before)
+    newest: Command = stage.session.commands[-1]
+    return newest
+
+
+def test_with_a_plan_the_rest_is_there_and_without_one_the_line(server: viser.ViserServer, stage: Stage) -> None:
+    with stage.client() as client:
+        stage.tick_until(client, lambda: client.control("Begin here (A)"))
+        assert not client.control("Plan the rest again from here")
+    planned = Stage(server, SetSession(field_snapshot()))
+    with planned.client() as client:
+        planned.tick_until(client, lambda: client.control("Plan the rest again from here"))
+        assert not client.control("Begin here (A)")
+
+
+def test_a_line_is_begun_ended_and_given_up(stage: Stage) -> None:
+    with stage.client() as client:
+        assert posted(stage, client, lambda: client.press("Begin here (A)")) == BeginLine("ab")
+        stage.session.publish(replace(stage.session.snapshot(), line_begun="ab", sequence=900))
+        assert posted(stage, client, lambda: client.press("End here (B)")) == EndLine()
+        assert posted(stage, client, lambda: client.press("Give up")) == DropLine()
+
+
+def test_a_plus_takes_a_typed_heading_or_the_tractors(stage: Stage) -> None:
+    with stage.client() as client:
+        client.press("A+")
+        stage.tick_until(client, lambda: client.control("Guide from here"))
+        assert posted(stage, client, lambda: client.press("Guide from here")) == BeginLine("a-plus")
+        client.set("Heading (°)", "92,5")
+        assert posted(stage, client, lambda: client.press("Guide from here")) == BeginLine("a-plus", 92.5)
+
+
+def test_a_heading_that_is_none_is_said_and_nothing_is_posted(stage: Stage) -> None:
+    with stage.client() as client:
+        client.press("A+")
+        stage.tick_until(client, lambda: client.control("Guide from here"))
+        for typed in ("north", "361", "nan"):
+            client.set("Heading (°)", typed)
+            client.press("Guide from here")
+            stage.tick_until(
+                client, lambda said=typed: any(f"'{said}' is no heading" in str(one) for one in client.messages)
+            )
+        assert stage.session.commands == []
