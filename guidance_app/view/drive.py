@@ -53,7 +53,7 @@ def pause_press(snapshot: Snapshot, words: Words) -> Press:
     """The small button beside the state: into a pause and out of it."""
     if snapshot.state is SessionState.PAUSED:
         return Press(words("Go on"), Resume())
-    return Press(words("Pause work"), Pause())
+    return Press(words("Pause"), Pause())
 
 
 def pass_work_words(snapshot: Snapshot, units: Units, words: Words) -> str:

@@ -65,12 +65,16 @@ def test_settings_that_change_are_told(start_console: StartConsole) -> None:
     session = HandSession()
     console = start_console(session)
     with live_socket(console) as page:
-        next(messages(page))
-        settings = session.job.settings.model_copy(update={"guide_implement": True})
-        session.job = session.job.model_copy(update={"settings": settings})
-        while "style" not in (message := json.loads(page.recv(timeout=PATIENCE_S))):
+        before = next(messages(page))
+        settings = session.job.settings.model_copy(update={"sounds": not session.job.settings.sounds})
+        console.house.manager.show_as(settings)
+        for _ in range(200):
+            message = json.loads(page.recv(timeout=PATIENCE_S))
+            if "style" in message:
+                break
             page.send(str(message["t"]))
-    assert message["style"]["guided"] == "implement"
+    assert before is not None
+    assert message["style"]["sounds"] is settings.sounds
 
 
 def test_a_page_that_does_not_answer_misses_messages_and_gets_the_newest(start_console: StartConsole) -> None:

@@ -64,7 +64,7 @@ COMMANDS = [
     ("Speed", SetWorkMode(WorkMode.SPEED)),
     ("Switch", SetWorkMode(WorkMode.SWITCH)),
     ("Auto", SetWorkMode(WorkMode.AUTO)),
-    ("Pause work", Pause()),
+    ("Pause", Pause()),
     ("1", SetSection(1, on=False)),
     ("3", SetSection(3, on=False)),
     ("Measure without a known point", BeginInitialisation()),

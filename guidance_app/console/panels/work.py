@@ -13,8 +13,6 @@ from guidance_app.model import (
     LineHere,
     Nudge,
     OffsetKind,
-    Pause,
-    Resume,
     ReverseDirection,
     SessionState,
     SetSection,
@@ -28,6 +26,7 @@ from guidance_app.view.status import neighbour, nudge_steps, work_view
 
 __all__ = ["Work"]
 
+STANDING = frozenset({SessionState.INITIALISING, SessionState.PAUSED, SessionState.ENDED})
 PAUSABLE = frozenset({SessionState.DRIVING, SessionState.PAUSED})
 IN_A_ROW = 8
 OFF_MARK = "✕ "
@@ -51,25 +50,13 @@ class Work:
         self._hands = hands
         self._words = words = hands.words
         post = hands.post
-        self._pass = buttons(
-            gui,
-            words("No line"),
-            (
-                (words("◀ Line"), lambda: self._take(-1)),
-                (words("Line ▶"), lambda: self._take(1)),
-                (words("Skip"), lambda: post(SkipPass())),
-            ),
-        )
-        self._pass_work = Shown(gui)
-        self._pause = buttons(
-            gui,
-            words("Driving"),
-            (
-                (words("Pause work"), lambda: post(Pause())),
-                (words("Go on"), lambda: post(Resume())),
-            ),
-        )
-        self._pause.options = (words("Pause work"),)
+        self._turns = {
+            words("◀ Line"): lambda: self._take(-1),
+            words("Line ▶"): lambda: self._take(1),
+            words("Skip"): lambda: post(SkipPass()),
+        }
+        self._pass = gui.add_button_group(words("No line"), tuple(self._turns))
+        self._pass.on_click(self._pressed)
         steps = nudge_steps(hands.desk().units)
         self._line = buttons(gui, words("Line"), tuple((name, partial(post, Nudge(metres))) for name, metres in steps))
         here = ((words("Here"), lambda: post(LineHere())), (words("As planned"), self._drop_offsets))
@@ -77,8 +64,18 @@ class Work:
         self._names = _modes(words)
         modes = {name: mode for mode, name in self._names.items()}
         self._mode = Choice(gui, words("Works by"), tuple(modes), lambda name: post(SetWorkMode(modes[name])))
-
+        self._pass_work = Shown(gui)
         self._sections = _Sections(gui, hands)
+
+    async def _pressed(self, event: viser.GuiEvent[viser.GuiButtonGroupHandle]) -> None:
+        """A step to another line, or the pause, which stands in the same row."""
+        turn = self._turns.get(event.target.value)
+        if turn is not None:
+            turn()
+        else:
+            command = pause_press(self._hands.desk().snapshot, self._words).command
+            if command is not None:
+                self._hands.post(command)
 
     def _take(self, step: int) -> None:
         number = neighbour(self._hands.desk().snapshot, step)
@@ -92,14 +89,14 @@ class Work:
     def show(self, desk: Desk) -> None:
         """Brings labels and marks up to what is."""
         view = work_view(desk.snapshot, desk.now, desk.units, self._words)
-        self._pass.label = view.pass_words
+        state = desk.snapshot.state
+        self._pass.label = state_words(state, self._words) if state in STANDING else view.pass_words
+        pause = (pause_press(desk.snapshot, self._words).words,) if state in PAUSABLE else ()
+        options = (*self._turns, *pause)
+        if self._pass.options != options:
+            self._pass.options = options
         self._line.label = view.line_words
         self._mode.show(self._names[desk.snapshot.work_mode])
-        self._pause.label = state_words(desk.snapshot.state, self._words)
-        self._pause.visible = desk.snapshot.state in PAUSABLE
-        pause = (pause_press(desk.snapshot, self._words).words,)
-        if self._pause.options != pause:
-            self._pause.options = pause
         said = pass_work_words(desk.snapshot, desk.units, self._words)
         self._pass_work.show(note_html(said) if said else "")
         self._sections.show(desk)
