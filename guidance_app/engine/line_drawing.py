@@ -13,11 +13,11 @@ from guidance_app.guidance.patterns import LINES
 from guidance_app.guidance.patterns.a_plus import points_of
 from guidance_app.guidance.patterns.pivot import points_of_arc
 from guidance_app.language import sentence
-from guidance_app.model import FloatArray
+from guidance_app.model import FloatArray, LineKind
 
 __all__ = ["AT_ONCE", "LineDrawing", "line_at_once"]
 
-AT_ONCE = frozenset({"a-plus", "last-pass"})
+AT_ONCE = frozenset({LineKind.A_PLUS, LineKind.FOLLOW})
 """Lines that need no second point."""
 POINT_EVERY = 0.5
 MOST_POINTS = 20_000
@@ -28,7 +28,7 @@ SHORTEST = 5.0
 class LineDrawing:
     """The points of one line while it is driven. ``kind`` is its name in ``LINES``."""
 
-    def __init__(self, kind: str, start: tuple[float, float]) -> None:
+    def __init__(self, kind: LineKind, start: tuple[float, float]) -> None:
         self.kind = kind
         self._points = [start]
 
@@ -46,15 +46,15 @@ class LineDrawing:
     def family(self, end: tuple[float, float], spacing: float) -> PassFamily:
         """The passes beside the line that ends here. Raises ``GuidanceLineError``."""
         points: FloatArray = np.array([*self._points, end])
-        if self.kind == "ab" and math.dist(points[0], points[-1]) < SHORTEST:
+        if self.kind is LineKind.AB and math.dist(points[0], points[-1]) < SHORTEST:
             msg = sentence("A and B are less than {metres:g} m apart: drive on", metres=SHORTEST)
             raise GuidanceLineError(msg)
-        if self.kind == "pivot":
+        if self.kind is LineKind.PIVOT:
             points = points_of_arc(points)
         return LINES[self.kind].family(points, spacing)
 
 
-def line_at_once(kind: str, point: tuple[float, float], heading: float, spacing: float) -> PassFamily:
+def line_at_once(kind: LineKind, point: tuple[float, float], heading: float, spacing: float) -> PassFamily:
     """Passes that need no driving first: through ``point`` in ``heading``, or beside whatever is driven next."""
-    points = points_of(point, heading) if kind == "a-plus" else np.zeros((0, 2))
+    points = points_of(point, heading) if kind is LineKind.A_PLUS else np.zeros((0, 2))
     return LINES[kind].family(points, spacing)

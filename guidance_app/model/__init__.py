@@ -27,6 +27,7 @@ from guidance_app.model.commands import (
     Event,
     FinishRollZero,
     LineHere,
+    LineKind,
     NextRollZeroDrive,
     Nudge,
     OffsetKind,
@@ -76,7 +77,6 @@ from guidance_app.model.worked import CoverageTotals, Strip, Trail
 __all__ = [
     "ATTITUDE",
     "CORRECTIONS",
-    "LINE_KINDS",
     "NO_PASS",
     "POSITION_OFFSETS",
     "RECEIVER",
@@ -105,6 +105,7 @@ __all__ = [
     "Initialised",
     "Initialising",
     "LineHere",
+    "LineKind",
     "LinkState",
     "LinkStatus",
     "Measurement",

@@ -7,7 +7,6 @@ from enum import StrEnum
 from guidance_app.model.wire import RECEIVER, Chunk
 
 __all__ = [
-    "LINE_KINDS",
     "POSITION_OFFSETS",
     "ApplyRollZero",
     "BeginInitialisation",
@@ -23,6 +22,7 @@ __all__ = [
     "Event",
     "FinishRollZero",
     "LineHere",
+    "LineKind",
     "NextRollZeroDrive",
     "Nudge",
     "OffsetKind",
@@ -44,8 +44,14 @@ __all__ = [
 ]
 
 
-LINE_KINDS = ("ab", "a-plus", "curve", "pivot", "last-pass")
-"""Guidance lines for driving without a plan."""
+class LineKind(StrEnum):
+    """Guidance lines for driving without a plan, by their names in the table of line types."""
+
+    AB = "ab"
+    A_PLUS = "a-plus"
+    CURVE = "curve"
+    PIVOT = "pivot"
+    FOLLOW = "last-pass"
 
 
 class WorkMode(StrEnum):
@@ -218,14 +224,11 @@ class BeginLine:
     ``a-plus`` (through here, in ``heading_deg`` or where the tractor points) and ``last-pass`` are there at once.
     """
 
-    kind: str
+    kind: LineKind
     heading_deg: float | None = None
 
     def __post_init__(self) -> None:
-        """Checks kind and heading."""
-        if self.kind not in LINE_KINDS:
-            msg = f"guidance line: {self.kind!r} is none of {', '.join(LINE_KINDS)}"
-            raise ValueError(msg)
+        """Checks the heading."""
         if self.heading_deg is not None and not 0 <= self.heading_deg <= 360:
             msg = f"heading: {self.heading_deg:g} degrees is not from 0 to 360"
             raise ValueError(msg)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from guidance_app.model.arrays import FloatArray
-from guidance_app.model.commands import OffsetKind, WorkMode
+from guidance_app.model.commands import LineKind, OffsetKind, WorkMode
 from guidance_app.model.lines import Guidance, Pass, Plan
 from guidance_app.model.motion import Pose, Prediction
 from guidance_app.model.session import Initialised, Initialising, RollZeroProgress, SessionState
@@ -122,7 +122,7 @@ class Snapshot:
     initialising: Initialising | None = None
     initialised: Initialised | None = None
     sections: tuple[bool, ...] = (True,)
-    line_begun: str | None = None
+    line_begun: LineKind | None = None
     pass_totals: CoverageTotals | None = None
     roll_zero: RollZeroProgress | None = None
     roll_zero_deg: float = 0.0

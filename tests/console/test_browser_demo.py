@@ -217,7 +217,7 @@ def test_the_job_half_done_is_drawn_at_three_sizes(demo: Demo, open_page: OpenPa
     for size in SIZES:
         page = opened(demo, open_page, size=size)
         if page.get_by_text("Replay", exact=True).is_hidden():
-            page.get_by_text(re.compile("Work · Views")).tap()
+            page.get_by_text(re.compile("^Work · ")).tap()
         hold(page)
         wind_to(page, IN_THE_MIDDLE)
         page.evaluate(PICTURES, 5)

@@ -9,7 +9,7 @@ from support.snapshots import SetSession, field_snapshot
 from support.stage import Stage, running_viser
 from support.viser_client import ViserClient
 
-from guidance_app.model import BeginLine, Command, DropLine, EndLine
+from guidance_app.model import BeginLine, Command, DropLine, EndLine, LineKind
 
 
 @pytest.fixture
@@ -45,8 +45,8 @@ def test_with_a_plan_the_rest_is_there_and_without_one_the_line(server: viser.Vi
 
 def test_a_line_is_begun_ended_and_given_up(stage: Stage) -> None:
     with stage.client() as client:
-        assert posted(stage, client, lambda: client.press("Begin here (A)")) == BeginLine("ab")
-        stage.session.publish(replace(stage.session.snapshot(), line_begun="ab", sequence=900))
+        assert posted(stage, client, lambda: client.press("Begin here (A)")) == BeginLine(LineKind("ab"))
+        stage.session.publish(replace(stage.session.snapshot(), line_begun=LineKind.AB, sequence=900))
         assert posted(stage, client, lambda: client.press("End here (B)")) == EndLine()
         assert posted(stage, client, lambda: client.press("Give up")) == DropLine()
 
@@ -55,9 +55,9 @@ def test_a_plus_takes_a_typed_heading_or_the_tractors(stage: Stage) -> None:
     with stage.client() as client:
         client.press("A+")
         stage.tick_until(client, lambda: client.control("Guide from here"))
-        assert posted(stage, client, lambda: client.press("Guide from here")) == BeginLine("a-plus")
+        assert posted(stage, client, lambda: client.press("Guide from here")) == BeginLine(LineKind("a-plus"))
         client.set("Heading (°)", "92,5")
-        assert posted(stage, client, lambda: client.press("Guide from here")) == BeginLine("a-plus", 92.5)
+        assert posted(stage, client, lambda: client.press("Guide from here")) == BeginLine(LineKind("a-plus"), 92.5)
 
 
 def test_a_heading_that_is_none_is_said_and_nothing_is_posted(stage: Stage) -> None:

@@ -7,25 +7,25 @@ import viser
 from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.widgets import Choice, Shown, notice_html
 from guidance_app.language import message
-from guidance_app.model import BeginLine, DropLine, EndLine
+from guidance_app.model import BeginLine, DropLine, EndLine, LineKind
 
 __all__ = ["Line"]
 
 NAMES = {
-    message("AB"): "ab",
-    message("A+"): "a-plus",
-    message("Curve"): "curve",
-    message("Pivot"): "pivot",
-    message("Last pass"): "last-pass",
+    message("AB"): LineKind.AB,
+    message("A+"): LineKind.A_PLUS,
+    message("Curve"): LineKind.CURVE,
+    message("Pivot"): LineKind.PIVOT,
+    message("Last pass"): LineKind.FOLLOW,
 }
 HELP = {
-    "ab": message("Straight passes: press Begin at A, drive, press End at B."),
-    "a-plus": message("Straight passes through here, in the heading typed below or where the tractor points."),
-    "curve": message("Passes beside a curve: press Begin, drive it, press End."),
-    "pivot": message("Circles: press Begin, drive a part of the circle, press End."),
-    "last-pass": message("Drive the first pass as you like; each next one runs beside the one before."),
+    LineKind.AB: message("Straight passes: press Begin at A, drive, press End at B."),
+    LineKind.A_PLUS: message("Straight passes through here, in the heading typed below or where the tractor points."),
+    LineKind.CURVE: message("Passes beside a curve: press Begin, drive it, press End."),
+    LineKind.PIVOT: message("Circles: press Begin, drive a part of the circle, press End."),
+    LineKind.FOLLOW: message("Drive the first pass as you like; each next one runs beside the one before."),
 }
-AT_ONCE = frozenset({"a-plus", "last-pass"})
+AT_ONCE = frozenset({LineKind.A_PLUS, LineKind.FOLLOW})
 
 
 class Line:
@@ -36,7 +36,7 @@ class Line:
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
         self._hands = hands
         self._words = words = hands.words
-        self._kind = "ab"
+        self._kind = LineKind.AB
         self._kinds = {words(name): kind for name, kind in NAMES.items()}
         self._choice = Choice(gui, words("Kind"), tuple(self._kinds), self._choose)
         self._help = Shown(gui)
@@ -62,7 +62,7 @@ class Line:
 
     def _start(self) -> None:
         heading: float | None = None
-        if self._kind == "a-plus" and self._heading.value.strip():
+        if self._kind == LineKind.A_PLUS and self._heading.value.strip():
             try:
                 heading = self._words.parse_number(self._heading.value)
                 command = BeginLine(self._kind, heading)
@@ -83,7 +83,7 @@ class Line:
         planned = desk.snapshot.plan is not None
         said = words("This drive follows a plan: start one without a plan to draw a line.") if planned else ""
         self._help.show(notice_html([said or words(HELP[begun or self._kind])]))
-        self._heading.visible = self._kind == "a-plus" and begun is None and not planned
+        self._heading.visible = self._kind == LineKind.A_PLUS and begun is None and not planned
         self._begin.visible = begun is None and not planned
         self._begin.label = words("Guide from here") if self._kind in AT_ONCE else words("Begin here (A)")
         self._end.visible = self._drop.visible = begun is not None
