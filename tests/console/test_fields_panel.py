@@ -23,7 +23,7 @@ from guidance_app.runtime import SessionManager
 from guidance_app.store import Store, copy_sample
 from guidance_app.store.photo_maps import list_maps
 
-MOST_REDRAWS = 400
+MOST_REDRAWS = 2000
 SOON_S = 0.03
 SQUARE = [(-40.0, -40.0), (40.0, -40.0), (40.0, 40.0), (-40.0, 40.0)]
 

@@ -21,7 +21,7 @@ from guidance_app.console.files import LARGEST_UPLOAD, Download
 from guidance_app.console.front import HEAD, patched_page
 from guidance_app.console.server import Console, ConsoleError
 
-PATIENCE_S = 10.0
+PATIENCE_S = 40.0
 MEGABYTE = 1_000_000
 
 

@@ -17,7 +17,7 @@ from websockets.sync.connection import Connection
 
 from guidance_app.console.server import Console
 
-PATIENCE_S = 10.0
+PATIENCE_S = 40.0
 MEGABYTE = 1_000_000
 
 

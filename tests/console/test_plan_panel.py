@@ -18,7 +18,7 @@ from guidance_app.model import Command, ReplanRest, TakePass
 from guidance_app.runtime import SessionManager
 from guidance_app.store import Store, copy_sample
 
-MOST_REDRAWS = 800
+MOST_REDRAWS = 2000
 SOON_S = 0.05
 PRESSED = [("Plan the rest again from here", ReplanRest()), ("Take this pass", TakePass(1))]
 

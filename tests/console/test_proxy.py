@@ -32,7 +32,7 @@ from guidance_app.console.server import Console
 from guidance_app.console.web_server import WebServer
 from guidance_app.language import ENGLISH
 
-PATIENCE_S = 10.0
+PATIENCE_S = 40.0
 MEGABYTE = 1_000_000
 
 

@@ -17,7 +17,7 @@ from guidance_app.sources import SourceError
 from guidance_app.sources.ports import FoundPort
 
 NOON = 43200.0
-MOST_REDRAWS = 600
+MOST_REDRAWS = 2000
 SOON_S = 0.05
 SKY = (
     sentence("GPGSV,2,1,05,02,25,181,42,06,45,146,45,12,19,292,,13,17,209,28"),

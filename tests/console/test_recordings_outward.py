@@ -20,7 +20,7 @@ from guidance_app.store import Store
 from guidance_app.store.recordings import open_recording
 from guidance_app.store.recordings_list import list_recordings
 
-MOST_REDRAWS = 600
+MOST_REDRAWS = 2000
 SOON_S = 0.03
 START = 1.7e9
 

@@ -24,7 +24,7 @@ from guidance_app.store import SAMPLE_RECORDING, Store, copy_sample, load_job
 from guidance_app.store.recordings import open_recording
 from guidance_app.store.recordings_list import list_recordings
 
-MOST_REDRAWS = 1500
+MOST_REDRAWS = 2000
 SOON_S = 0.03
 
 

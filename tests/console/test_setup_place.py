@@ -16,7 +16,7 @@ from guidance_app.model import EndDrive, SessionState
 from guidance_app.runtime import SessionManager
 from guidance_app.store import Store, copy_sample, load_job
 
-MOST_REDRAWS = 400
+MOST_REDRAWS = 2000
 SOON_S = 0.05
 
 

@@ -30,7 +30,7 @@ __all__ = [
 ]
 
 VISER = Subprotocol(f"viser-v{viser.__version__}")
-PATIENCE_S = 10.0
+PATIENCE_S = 40.0
 
 StartConsole = Callable[..., Console]
 

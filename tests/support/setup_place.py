@@ -18,7 +18,7 @@ from support.viser_client import ViserClient, viser_client
 
 __all__ = ["SetupPlace", "setup_place"]
 
-MOST_REDRAWS = 400
+MOST_REDRAWS = 2000
 SOON_S = 0.03
 
 

@@ -35,7 +35,7 @@ from support.sessions import HandSession
 __all__ = ["FIELD", "TREES", "SetSession", "field_job", "field_snapshot", "straight_passes", "strip", "trail"]
 
 ORIGIN_DEG = (47.5, 8.5)
-PATIENCE_S = 10.0
+PATIENCE_S = 40.0
 FIELD = np.array([[0.0, 0.0], [120.0, 0.0], [150.0, 200.0], [0.0, 180.0], [0.0, 0.0]])
 TREES = np.array([[60.0, 80.0], [70.0, 80.0], [70.0, 90.0], [60.0, 90.0], [60.0, 80.0]])
 

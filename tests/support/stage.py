@@ -14,7 +14,7 @@ from support.viser_client import ViserClient, viser_client
 
 __all__ = ["Stage", "running_viser", "visible"]
 
-MOST_REDRAWS = 400
+MOST_REDRAWS = 2000
 SOON_S = 0.05
 
 

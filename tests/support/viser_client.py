@@ -19,7 +19,7 @@ from websockets.typing import Subprotocol
 
 __all__ = ["ViserClient", "viser_client"]
 
-PATIENCE_S = 15.0
+PATIENCE_S = 40.0
 
 
 def _says(option: str, words: str) -> bool:
