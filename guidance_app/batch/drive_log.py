@@ -29,8 +29,7 @@ def gathered(
     """Every row of these events, and the last snapshot. ``progress`` hears from 0 to 1."""
     engine = Engine(job, filter_name=filter_name, settings=settings)
     gathering = DriveGathering()
-    for number, event in enumerate(_told(events, progress)):
-        del number
+    for event in _told(events, progress):
         for snapshot in engine.steps(event):
             gathering.take(snapshot)
     return gathering

@@ -22,7 +22,7 @@ from guidance_app.store.files import StoreError, write_atomically
 from guidance_app.store.recordings import job_in, opened, read_recording
 from guidance_app.store.reviews import KeptColumns, keep_columns, kept_columns, place_of
 
-__all__ = ["Review", "additions_of", "entry_of", "keep_additions", "opened_review", "review_of"]
+__all__ = ["Review", "additions_of", "entry_of", "keep_additions", "opened_review"]
 
 ADDITIONS = "ledger.json"
 
@@ -64,12 +64,6 @@ def opened_review(path: Path, data: Path, progress: Callable[[float], None] | No
         kept = KeptColumns(log, totals, whole=drive.truncated is None)
         keep_columns(place, kept)
     return Review(drive.name, drive.job, kept.log, kept.totals, drive.truncated)
-
-
-def review_of(drive: RecordedDrive, progress: Callable[[float], None] | None = None) -> Review:
-    """The review of a drive in hand; nothing is kept."""
-    log, totals = _made(drive, progress)
-    return Review(drive.name, drive.job, log, totals, drive.truncated)
 
 
 def _made(drive: RecordedDrive, progress: Callable[[float], None] | None) -> tuple[DriveLog, CoverageTotals]:

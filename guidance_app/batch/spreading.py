@@ -13,16 +13,13 @@ from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
 from guidance_app.batch.many import Outcome, Task, brought_along, outcome_of
-from guidance_app.evaluation.cluster import ClusterError
+from guidance_app.evaluation.cluster import PER_THREAD, connected
 from guidance_app.sources import SourceError
 from guidance_app.store import StoreError
 
 __all__ = ["clustered", "spread"]
 
 TRIES = 2
-PER_THREAD = 2
-"""Tasks given out at a time, for each thread of a cluster; the content of so many is in memory at once."""
-CONNECT_S = 10
 
 
 def spread(tasks: Sequence[Task], processes: int) -> Iterator[Outcome]:
@@ -84,24 +81,13 @@ def clustered(tasks: Sequence[Task], address: str) -> Iterator[Outcome]:
 
     Raises ``ClusterError`` when Dask is not installed or no scheduler answers.
     """
-    try:
-        import distributed  # noqa: PLC0415 - an extra
-    except ModuleNotFoundError as error:
-        msg = "Dask is not installed; pip install 'guidance-app[cluster]'"
-        raise ClusterError(msg) from error
-    try:
-        client: Any = distributed.Client(address, timeout=CONNECT_S, set_as_default=False)  # type: ignore[no-untyped-call]  # the package has no types
-    except (OSError, TimeoutError, ValueError) as error:
-        msg = f"no Dask scheduler answers at {address}: {error}"
-        raise ClusterError(msg) from error
-    with client:
-        done: Any = distributed.as_completed(loop=client.loop, raise_errors=False)  # type: ignore[no-untyped-call]  # no types
+    with connected(address) as (client, done):
         yield from _arriving(client, done, deque((task, 1) for task in tasks))
 
 
 def _arriving(client: Any, done: Any, waiting: "deque[tuple[Task, int]]") -> Iterator[Outcome]:
     """The outcomes as the cluster gives them; ``done`` is the client's queue of what is completed."""
-    pending: dict[Any, tuple[Task, int]] = {}
+    pending: dict[Any, tuple[Task, int]] = {}  # the content of so many is in memory at once
     while waiting or pending:
         threads = max(1, sum(client.nthreads().values()))
         while waiting and len(pending) < PER_THREAD * threads:

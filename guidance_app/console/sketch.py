@@ -151,11 +151,6 @@ class Sketch:
             self._listens = False
             self._client.scene.remove_click_callback()
 
-    @property
-    def hears_taps(self) -> bool:
-        """True while taps on the ground mean something."""
-        return self._tapped is not None
-
     async def _clicked(self, event: viser.SceneClickEvent) -> None:
         tapped = self._tapped
         if tapped is None:

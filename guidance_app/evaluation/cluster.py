@@ -4,6 +4,7 @@ A worker that dies takes nothing with it: the scheduler gives its chunks to anot
 is asked for anew from here.
 """
 
+import contextlib
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -11,10 +12,10 @@ from guidance_app.estimation.filter import QuantisationSettings
 from guidance_app.evaluation.objectives import Objective
 from guidance_app.evaluation.tuning import Chunk, ChunkBest, Found, best_of_chunk, best_so_far, noise_of
 
-__all__ = ["ClusterError", "cluster_search"]
+__all__ = ["PER_THREAD", "ClusterError", "cluster_search", "connected"]
 
 PER_THREAD = 2
-"""Chunks that are asked for at a time, for each thread of the cluster."""
+"""Tasks that are asked for at a time, for each thread of the cluster."""
 
 CONNECT_S = 10
 TRIES = 5
@@ -24,8 +25,9 @@ class ClusterError(Exception):
     """Why the cluster cannot be used, in a sentence."""
 
 
-def cluster_search(objective: Objective, chunks: Sequence[Chunk], address: str) -> Iterator[Found]:
-    """The best draw so far after each chunk, computed by the workers of the scheduler at ``address``.
+@contextlib.contextmanager
+def connected(address: str) -> Iterator[tuple[Any, Any]]:
+    """A client of the scheduler at ``address``, and its queue of what is completed; both go at the end.
 
     Raises :class:`ClusterError` when Dask is not installed or no scheduler answers.
     """
@@ -39,9 +41,17 @@ def cluster_search(objective: Objective, chunks: Sequence[Chunk], address: str) 
     except (OSError, TimeoutError, ValueError) as error:
         msg = f"no Dask scheduler answers at {address}: {error}"
         raise ClusterError(msg) from error
-    objective = objective.hardest_first(noise_of(QuantisationSettings()))
     with client:
-        asked: Any = distributed.as_completed(loop=client.loop, raise_errors=False)  # type: ignore[no-untyped-call]  # no types
+        yield client, distributed.as_completed(loop=client.loop, raise_errors=False)  # type: ignore[no-untyped-call]  # no types
+
+
+def cluster_search(objective: Objective, chunks: Sequence[Chunk], address: str) -> Iterator[Found]:
+    """The best draw so far after each chunk, computed by the workers of the scheduler at ``address``.
+
+    Raises :class:`ClusterError` when Dask is not installed or no scheduler answers.
+    """
+    objective = objective.hardest_first(noise_of(QuantisationSettings()))
+    with connected(address) as (client, asked):
         yield from best_so_far(objective, chunks, _arriving(client, asked, objective, chunks))
 
 

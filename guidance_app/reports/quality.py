@@ -5,7 +5,6 @@ tractor comes out of its turn.
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -138,9 +137,3 @@ def _quality(log: DriveLog, mine: np.ndarray, number: int | None) -> PassQuality
         largest=float(sizes.max()),
         speed=float(np.nanmean(np.abs(log.speed[mine]))),
     )
-
-
-def together(qualities: Sequence[PassQuality]) -> float | None:
-    """The root mean square of several passes, each with the weight of its fixes; None without any."""
-    fixes = sum(one.fixes for one in qualities)
-    return math.sqrt(sum(one.fixes * one.rms**2 for one in qualities) / fixes) if fixes else None

@@ -6,6 +6,7 @@ import viser
 
 from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.widgets import Choice, Shown, notice_html
+from guidance_app.engine.line_drawing import AT_ONCE
 from guidance_app.language import message
 from guidance_app.model import BeginLine, DropLine, EndLine, LineKind
 
@@ -25,7 +26,6 @@ HELP = {
     LineKind.PIVOT: message("Circles: press Begin, drive a part of the circle, press End."),
     LineKind.FOLLOW: message("Drive the first pass as you like; each next one runs beside the one before."),
 }
-AT_ONCE = frozenset({LineKind.A_PLUS, LineKind.FOLLOW})
 
 
 class Line:
