@@ -23,7 +23,8 @@ from guidance_app.commands import run
 NOON = 43200.0
 START_S = 60.0
 END_S = 20.0
-END_OF_CORRECTIONS = b"".join(FRAMES)[-20:]
+CORRECTIONS = b"".join(FRAMES)
+PAGE_S = 30.0
 
 
 @contextlib.contextmanager
@@ -62,7 +63,7 @@ def test_it_reads_two_ports_sends_corrections_and_ends_in_good_order(tmp_path: P
     sensor.plug()
     data = tmp_path / "data"
     came = b""
-    with local_caster(2) as caster:
+    with local_caster(2, again=True) as caster:
         address = f"ntrip://{quote(USER, safe='')}@127.0.0.1:{caster.server.port}/{MOUNT}"
         options = (
             *("--source", f"serial://{receiver.path}?baud=115200"),
@@ -78,14 +79,14 @@ def test_it_reads_two_ports_sends_corrections_and_ends_in_good_order(tmp_path: P
             assert page is not None
             end = time.monotonic() + START_S
             step = 0
-            while not (caster.told.is_set() and came.endswith(END_OF_CORRECTIONS)):
+            while not (caster.told.is_set() and CORRECTIONS in came):
                 assert time.monotonic() < end, (printed, caster.requests, came[-40:])
                 receiver.send(epoch(NOON + step / 10))
                 sensor.send(sentence("PGATT,,2.00,0.50,,,,1.00"))
                 came += receiver.sent_back()
                 threading.Event().wait(0.02)
                 step += 1
-            shown = httpx.get(page[0]).text
+            shown = httpx.get(page[0], timeout=PAGE_S).text
             process.send_signal(signal.SIGINT)
             rest, _ = process.communicate(timeout=END_S)
             assert process.returncode == 0

@@ -4,6 +4,7 @@ import base64
 import contextlib
 import socket
 import threading
+import time
 from collections.abc import Iterator
 
 from support.servers import Server, server
@@ -13,18 +14,23 @@ __all__ = ["FRAMES", "MOUNT", "PASSWORD", "USER", "LocalCaster", "local_caster"]
 USER, PASSWORD, MOUNT = "farmer@home", "s3cret:wörd", "NEAREST"
 FRAMES = tuple(b"\xd3\x00" + bytes([number]) * 40 for number in range(30))
 """What it sends: no real corrections, but bytes as binary as those."""
+AGAIN_S = 1.0
 
 
 class LocalCaster:
-    """Answers with ``FRAMES``, once a connection; keeps it open until it is told to break it."""
+    """Answers with ``FRAMES``, once a connection or, with ``again``, every second, as casters do.
 
-    def __init__(self, version: int, *, cut: int = 1000) -> None:
+    Keeps the connection open until it is told to break it.
+    """
+
+    def __init__(self, version: int, *, cut: int = 1000, again: bool = False) -> None:
         self.version = version
         self.requests: list[bytes] = []
         self.positions: list[bytes] = []
         self.told = threading.Event()
         self.breaks = threading.Event()
         self.cut = cut
+        self.again = again
         self.server: Server
 
     def answer(self, connection: socket.socket, _number: int) -> None:
@@ -49,17 +55,25 @@ class LocalCaster:
         self._hear(connection)
 
     def _send(self, connection: socket.socket) -> None:
+        header = b"HTTP/1.1 200 OK\r\nContent-Type: gnss/data\r\nTransfer-Encoding: chunked\r\n\r\n"
+        self._send_cut(connection, (b"ICY 200 OK\r\n" if self.version == 1 else header) + self._frames())
+
+    def _frames(self) -> bytes:
         if self.version == 1:
-            stream = b"ICY 200 OK\r\n" + b"".join(FRAMES)
-        else:
-            header = b"HTTP/1.1 200 OK\r\nContent-Type: gnss/data\r\nTransfer-Encoding: chunked\r\n\r\n"
-            stream = header + b"".join(b"%X\r\n%s\r\n" % (len(one), one) for one in FRAMES)
+            return b"".join(FRAMES)
+        return b"".join(b"%X\r\n%s\r\n" % (len(one), one) for one in FRAMES)
+
+    def _send_cut(self, connection: socket.socket, stream: bytes) -> None:
         for start in range(0, len(stream), self.cut):
             connection.sendall(stream[start : start + self.cut])
 
     def _hear(self, connection: socket.socket) -> None:
         connection.settimeout(0.05)
+        sent = time.monotonic()
         while not self.breaks.is_set():
+            if self.again and time.monotonic() - sent >= AGAIN_S:
+                sent = time.monotonic()
+                self._send_cut(connection, self._frames())
             with contextlib.suppress(TimeoutError):
                 data = connection.recv(4096)
                 if not data:
@@ -70,9 +84,9 @@ class LocalCaster:
 
 
 @contextlib.contextmanager
-def local_caster(version: int, *, cut: int = 1000) -> Iterator[LocalCaster]:
+def local_caster(version: int, *, cut: int = 1000, again: bool = False) -> Iterator[LocalCaster]:
     """Meanwhile it answers."""
-    caster = LocalCaster(version, cut=cut)
+    caster = LocalCaster(version, cut=cut, again=again)
     with server(caster.answer) as running:
         caster.server = running
         try:

@@ -95,6 +95,9 @@ class _Offers(Still):
     def __init__(self, gui: viser.GuiApi, hands: Hands, found: Beginnings | None, sources: Mapping[str, str]) -> None:
         self._gui, self._hands, self._words = gui, hands, hands.words
         self._found, self._sources = found, sources
+        self._taken: float | None = None
+        """How much of a drive that goes on is taken in, 0 to 1; the worker writes it, the redraw shows it."""
+        self._said: Shown | None = None
         if found is not None:
             if found.cut_off is not None:
                 self._offer_to_go_on(found.cut_off)
@@ -117,11 +120,9 @@ class _Offers(Still):
     def _go_on(self, found: Resumable) -> None:
         if not self._hands.wheel.mine():
             return
-        words = self._words
 
         def tell(part: float) -> None:
-            percent = words.number(100 * part)
-            self._said.show(notice_html([words("Taking the drive again: {percent} %", percent=percent)]))
+            self._taken = part
 
         self._hands.house.resume(found, tell)
         self._hands.go(Place.DRIVE)
@@ -204,7 +205,10 @@ class _Offers(Still):
         self._hands.go(Place.DRIVE)
 
     def show(self, desk: Desk) -> None:
-        """Brings the form up to what was touched."""
+        """Brings the form up to what was touched, and the progress up to now."""
+        if self._said is not None and self._taken is not None:
+            percent = self._words.number(100 * self._taken)
+            self._said.show(notice_html([self._words("Taking the drive again: {percent} %", percent=percent)]))
         self._form.show(desk)
 
 
