@@ -92,6 +92,11 @@ class QuantisationSettings(SettingsPart):
     measurement_noise: Variances = Field((1.51, 5.58, 1.95, 1.68), title="Measurement noise R")
     start_covariance: Variances = Field((3.7, 6.4, 3.7, 6.7), title="Covariance at the start")
 
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """All twelve, as the kernels take them."""
+        return (*self.process_noise, *self.measurement_noise, *self.start_covariance)
+
 
 class GyroSettings(SettingsPart):
     """The filter of Inoue et al.: random walks of the state's four parts and the fix's scatter.

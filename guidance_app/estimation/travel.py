@@ -6,70 +6,39 @@ between two looks is a tractor that backs up, not one that turns: at the tightes
 Places are medians of three fixes, so that one outlier is neither a baseline nor a reversal.
 """
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from guidance_app.angles import heading_between, wrap_2pi, wrap_pi
+from guidance_app.estimation.observation_kernels import NO_COURSE
+from guidance_app.estimation.travel_kernels import KEPT, REVERSE, WAY_HEADING, nothing_driven, travelled
+from guidance_app.model import FloatArray
 
 __all__ = ["Travel"]
 
-BASELINE = 1.0
-"""A heading is read over at least this many metres."""
-SPACING = 0.1
-"""Fixes nearer to the last kept one than this tell nothing new about the direction."""
-REVERSAL = math.radians(110)
-LONGEST_BACKING = 30.0
 
-
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Travel:
-    """The last metre driven, the heading it gives, and whether the tractor backs up. ``heading`` is the body's.
+    """The last metre driven, the heading it gives, and whether the tractor backs up: ``travel_kernels``' memory."""
 
-    ``fixes`` are the last two, ``points`` the medians kept.
-    """
-
-    points: tuple[tuple[float, float], ...] = ()
-    heading: float | None = None
-    reverse: bool = False
-    backed: float = 0.0
-    fixes: tuple[tuple[float, float], ...] = ()
+    memory: FloatArray = field(default_factory=nothing_driven)
 
     def to(self, east: float, north: float, compass: float | None = None) -> "Travel":
         """After one more fix. ``compass`` is a measured heading of the body; it decides which way is forward."""
-        three = (*self.fixes, (east, north))
-        fixes = three[-2:]
-        if len(three) < 3:
-            return self._with(fixes, compass)
-        here = (sorted(e for e, _ in three)[1], sorted(n for _, n in three)[1])
-        if self.points and math.dist(self.points[-1], here) < SPACING:
-            return self._with(fixes, compass)
-        step = math.dist(self.points[-1], here) if self.points else 0.0
-        backed = self.backed + step if self.reverse else 0.0
-        far = next(
-            (i for i in range(len(self.points) - 1, -1, -1) if math.dist(self.points[i], here) >= BASELINE), None
-        )
-        kept = (*self.points, here) if far is None else (*self.points[far:], here)
-        if far is None:
-            heading = compass if compass is not None else self.heading
-            return Travel(kept[-64:], heading, self.reverse, backed, fixes)
-        course = heading_between(self.points[far], here)
-        heading, reverse, backed = self._turned(course, compass, backed)
-        return Travel(kept, heading, reverse, backed, fixes)
+        memory = self.memory.copy()
+        travelled(memory, east, north, NO_COURSE if compass is None else compass)
+        return Travel(memory)
 
-    def _with(self, fixes: tuple[tuple[float, float], ...], compass: float | None) -> "Travel":
-        """The same way with newer fixes."""
-        heading = self.heading if compass is None else compass
-        return Travel(self.points, heading, self.reverse, self.backed, fixes)
+    @property
+    def heading(self) -> float | None:
+        """The body's heading; None before a metre has been driven."""
+        heading = float(self.memory[WAY_HEADING])
+        return None if heading == NO_COURSE else heading
 
-    def _turned(self, course: float, compass: float | None, backed: float) -> tuple[float, bool, float]:
-        """Heading, reverse and metres backed with a new baseline's direction."""
-        if compass is not None:
-            return compass, abs(wrap_pi(course - compass)) > math.pi / 2, 0.0
-        if backed > LONGEST_BACKING:
-            return course, False, 0.0
-        reverse = self.reverse
-        body = wrap_2pi(course + math.pi) if reverse else course
-        if self.heading is not None and abs(wrap_pi(body - self.heading)) > REVERSAL:
-            reverse = not reverse
-            body = wrap_2pi(body + math.pi)
-        return body, reverse, backed if reverse else 0.0
+    @property
+    def reverse(self) -> bool:
+        """Whether the tractor backs up."""
+        return bool(self.memory[REVERSE] == 1.0)
+
+    @property
+    def kept(self) -> int:
+        """How many places are remembered."""
+        return int(self.memory[KEPT])

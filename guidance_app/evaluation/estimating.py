@@ -1,10 +1,11 @@
-"""Any filter on any trajectory: arrays in, estimated poses out, through the very code that runs in the cab."""
+"""Any filter on any trajectory: arrays in, estimated poses out, through the very steps that run in the cab."""
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from guidance_app.estimation.filter import FilterSettings
 from guidance_app.estimation.filters import make_filter
+from guidance_app.evaluation.quantisation import quantisation_track
 from guidance_app.evaluation.tracks import Recording, Track, measurements, track_from_poses
 from guidance_app.model import FixQuality, FloatArray
 
@@ -72,7 +73,13 @@ def estimate(  # noqa: PLR0913 - one argument a sensor; all but three have defau
 
 
 def estimate_recording(recording: Recording, filter_name: str, settings: FilterSettings | None = None) -> Track:
-    """The poses that the filter estimates along ``recording``, one for each epoch at which it had one."""
+    """The poses that the filter estimates along ``recording``, one for each epoch at which it had one.
+
+    ``quantisation_kf`` runs over the whole recording in one compiled loop around the step that the cab takes fix by
+    fix; the poses are the same to the last bit.
+    """
+    if filter_name == "quantisation_kf":
+        return quantisation_track(recording, settings or FilterSettings())
     estimator = make_filter(filter_name, settings)
     poses = [pose for z in measurements(recording) if (pose := estimator.step(z)) is not None]
     return track_from_poses(poses)

@@ -60,9 +60,14 @@ def frame_of(fixes: Sequence[Fix]) -> FieldFrame:
 
 
 def recording_from_fixes(fixes: Sequence[Fix], frame: FieldFrame, *, with_velocity: bool = True) -> Recording:
-    """The fixes in the frame, repeated epochs left out. The velocity is kept when every fix has course and speed."""
-    kept = [fix for fix, before in zip(fixes[1:], fixes, strict=False) if fix.t > before.t]
-    kept = [*fixes[:1], *kept]
+    """The fixes in the frame, repeated and older epochs left out.
+
+    The velocity is kept when every fix has course and speed.
+    """
+    kept = list(fixes[:1])
+    for fix in fixes:
+        if fix.t > kept[-1].t:
+            kept.append(fix)
     position = frame.array_from_lonlat([(fix.longitude_deg, fix.latitude_deg) for fix in kept])
     velocity = None
     if with_velocity and all(fix.speed is not None and fix.course is not None for fix in kept):

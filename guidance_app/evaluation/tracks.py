@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from guidance_app.model import FixQuality, FloatArray, Measurement, Pose
 
-__all__ = ["BoolArray", "Recording", "Track", "measurements", "track_from_poses"]
+__all__ = ["BoolArray", "Recording", "Track", "course_and_speed", "measurements", "track_from_poses"]
 
 BoolArray = NDArray[np.bool_]
 
@@ -58,7 +58,7 @@ class Track:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Recording:
-    """What a receiver, and perhaps a gyro, said along a path. What is None was not measured.
+    """What a receiver, and perhaps a gyro, said along a path; times grow. What is None was not measured.
 
     ``position`` and ``velocity`` have shape (N, 2): east, north; ``cell`` is the rounding (east, north) of all
     positions in metres, None when they are not rounded to speak of; ``yaw_rate`` the gyro's, shape (N,), positive
@@ -93,8 +93,7 @@ def measurements(recording: Recording) -> Iterator[Measurement]:
     speed: Iterable[float | None] = nothing
     course: Iterable[float | None] = nothing
     if recording.velocity is not None:
-        speed = np.hypot(recording.velocity[:, 0], recording.velocity[:, 1]).tolist()
-        course = (np.arctan2(recording.velocity[:, 0], recording.velocity[:, 1]) % math.tau).tolist()
+        course, speed = (values.tolist() for values in course_and_speed(recording.velocity))
     yaw_rate = nothing if recording.yaw_rate is None else recording.yaw_rate.tolist()
     heading = nothing if recording.heading is None else recording.heading.tolist()
     antenna = np.zeros((count, 3)) if recording.antenna is None else recording.antenna
@@ -124,6 +123,12 @@ def measurements(recording: Recording) -> Iterator[Measurement]:
             yaw_rate=rate,
             antenna=(forward, right, height),
         )
+
+
+def course_and_speed(velocity: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Course over ground in [0, 2 pi) and speed, both (N,), of velocities (N, 2)."""
+    course = np.arctan2(velocity[:, 0], velocity[:, 1]) % math.tau
+    return course, np.hypot(velocity[:, 0], velocity[:, 1])
 
 
 def track_from_poses(poses: Iterable[Pose]) -> Track:

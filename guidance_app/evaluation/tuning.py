@@ -85,7 +85,7 @@ class Found:
 
 def noise_of(settings: QuantisationSettings) -> FloatArray:
     """The diagonals of Q, R and P0 in one row (12 numbers)."""
-    return np.array([*settings.process_noise, *settings.measurement_noise, *settings.start_covariance])
+    return np.array(settings.numbers)
 
 
 def settings_from(noise: FloatArray, base: FilterSettings | None = None) -> FilterSettings:

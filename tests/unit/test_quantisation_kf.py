@@ -1,6 +1,7 @@
 """The filter of Gomez-Gil et al.: its arithmetic against the printed matrices, and where it is known to fail."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,17 +10,20 @@ from support.drives_of_filters import Kit, Moment, drive, heading_error, measure
 from guidance_app.angles import wrap_pi
 from guidance_app.estimation.filter import FilterSettings, QuantisationSettings
 from guidance_app.estimation.filters import make_filter
-from guidance_app.estimation.filters.quantisation_kf import FourStates, correct, predict
-from guidance_app.model import FloatArray, Pose
+from guidance_app.estimation.quantisation_kernels import correct, predict
+from guidance_app.evaluation.quantisation import quantisation_track
+from guidance_app.evaluation.signals import PAPER_CELL, rounded
+from guidance_app.evaluation.tracks import Recording, measurements, track_from_poses
+from guidance_app.model import FixQuality, FloatArray, Pose
 
 TINY = 1e-10
 CENTIMETRE = 0.01
 SETTINGS = QuantisationSettings()
 
 
-def as_matrices(s: FourStates) -> tuple[FloatArray, FloatArray]:
+def as_matrices(s: FloatArray) -> tuple[FloatArray, FloatArray]:
     p = np.array([[s[4], s[5], 0, s[6]], [s[5], s[7], 0, s[8]], [0, 0, s[10], 0], [s[6], s[8], 0, s[9]]])
-    return np.array(s[:4]), p
+    return s[:4].copy(), p
 
 
 def test_it_is_the_printed_recursion_of_four_by_four_matrices():
@@ -27,7 +31,7 @@ def test_it_is_the_printed_recursion_of_four_by_four_matrices():
     random = np.random.default_rng(1)
     Q, R = np.diag(SETTINGS.process_noise), np.diag(SETTINGS.measurement_noise)
     p0 = SETTINGS.start_covariance
-    state: FourStates = (1.0, 2.0, 3.0, 1.4, p0[0], 0.0, 0.0, p0[1], 0.0, p0[3], p0[2])
+    state = np.array([1.0, 2.0, 3.0, 1.4, p0[0], 0.0, 0.0, p0[1], 0.0, p0[3], p0[2]])
     x, P = as_matrices(state)
     for _ in range(200):
         dt = float(random.uniform(0.05, 1.0))
@@ -41,7 +45,8 @@ def test_it_is_the_printed_recursion_of_four_by_four_matrices():
         K = P @ np.linalg.inv(P + R)
         x, P = x + K @ innovation, (np.eye(4) - K) @ P
         x[2] = wrap_pi(x[2])
-        state = correct(predict(state, dt, SETTINGS.process_noise), tuple(z.tolist()), SETTINGS.measurement_noise)
+        predict(state, dt, np.diag(Q))
+        correct(state, tuple(z.tolist()), np.diag(R))
         ours = as_matrices(state)
         assert ours[0] == pytest.approx(x, abs=TINY)
         assert ours[1] == pytest.approx(P, abs=TINY)
@@ -99,3 +104,42 @@ def test_before_heading_and_speed_are_there_it_is_the_fix():
     assert not second.heading_known
     assert third.heading_known
     assert (first.east, first.north) == (measured(straight())[0].east, measured(straight())[0].north)
+
+
+# --- a whole recording at once -------------------------------------------------------------------------------------
+
+
+def full_recording(random: np.random.Generator) -> Recording:
+    """Driving, standing, backing up, two gaps (one too long), a compass that stays and a lever arm that swings."""
+    truth = drive(
+        lambda t: 2.0 if t < 40 else 0.0 if t < 50 else -1.0 if t < 70 else 1.5, lambda t: 0.1 * (t > 90), 120
+    )
+    kept = [m for m in truth if not (20 < m.t < 23 or 100 < m.t < 107)]
+    count = len(kept)
+    velocity = np.array([(m.speed * math.sin(m.heading), m.speed * math.cos(m.heading)) for m in kept])
+    return Recording(
+        t=np.array([m.t for m in kept]),
+        position=rounded(np.array([(m.east, m.north) for m in kept]), PAPER_CELL),
+        cell=PAPER_CELL,
+        velocity=velocity + random.normal(0, 0.05, (count, 2)),
+        heading=np.array([m.heading for m in kept]) + random.normal(0, 0.03, count),
+        antenna=random.normal(0, 0.3, (count, 3)),
+        quality=FixQuality.DGPS,
+    )
+
+
+@pytest.mark.parametrize("without", [(), ("velocity",), ("heading",), ("velocity", "heading", "antenna")])
+def test_a_whole_recording_at_once_gives_the_same_poses_to_the_last_bit(without: tuple[str, ...]):
+    recording = replace(full_recording(np.random.default_rng(5)), **dict.fromkeys(without))
+    estimator = make_filter("quantisation_kf")
+    stepped = track_from_poses(pose for z in measurements(recording) if (pose := estimator.step(z)) is not None)
+    at_once = quantisation_track(recording, FilterSettings())
+    assert len(stepped) == len(recording)
+    assert stepped.covariance is not None
+    for name in ("t", "east", "north", "heading", "speed", "curvature", "heading_known", "covariance"):
+        assert np.array_equal(getattr(at_once, name), getattr(stepped, name)), name
+
+
+def test_no_recording_gives_no_poses():
+    empty = Recording(t=np.zeros(0), position=np.zeros((0, 2)), cell=None)
+    assert len(quantisation_track(empty, FilterSettings())) == 0
