@@ -13,6 +13,7 @@ from guidance_app.angles import wrap_2pi
 from guidance_app.decode.plausibility import metres_between
 from guidance_app.decode.sentence import Sentence
 from guidance_app.model import FixQuality
+from guidance_app.model.making import made_quickly
 
 __all__ = ["POSITION_KINDS", "SECOND_GGA", "Epoch", "Orientation", "orientation_of"]
 
@@ -111,6 +112,7 @@ class Epoch:
         return place if 0.0 < baseline < LONGEST_BASELINE else None
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class Orientation:
     """What attitude sentences say together, the first word counting. Radians and radians a second."""

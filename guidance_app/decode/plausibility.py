@@ -12,6 +12,8 @@ between fixes of an autonomous receiver in the open); a pause of an hour is a ne
 from dataclasses import dataclass, replace
 from math import cos, hypot, radians
 
+from guidance_app.model.making import made_quickly
+
 __all__ = ["Place", "Plausibility", "metres_between"]
 
 MAX_ACCELERATION = 15.0
@@ -28,6 +30,7 @@ METRES_PER_DEGREE = 1852.0 * 60.0
 """Good to half a percent, which is enough to judge a jump by."""
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class Place:
     """Where and when a fix was, and its speed where known."""

@@ -7,6 +7,7 @@ metres a second) and signs too (roll right side down, pitch nose up, yaw rate cl
 from dataclasses import dataclass
 
 from guidance_app.model import FixQuality, Satellite
+from guidance_app.model.making import made_quickly
 
 __all__ = ["DecodeError", "InView", "Sentence"]
 
@@ -26,6 +27,7 @@ class InView:
     satellites: tuple[Satellite, ...]
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class Sentence:
     """One sentence, read strictly.

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from guidance_app.estimation.receiver_noise import DEFAULT_CELL
 from guidance_app.model import Measurement
+from guidance_app.model.making import made_quickly
 
 __all__ = ["Stillness"]
 
@@ -21,6 +22,7 @@ STANDING_SD = 0.01
 """How still, in m/s, a tractor is whose receiver says that it stands."""
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class Stillness:
     """Since when the fix has stayed where it is, and since when the receiver's speed has been low. Times are ``t``."""

@@ -18,6 +18,7 @@ from guidance_app.guidance.continuity import Continuity, is_place
 from guidance_app.guidance.coverage_grid import CoverageGrid, Ground, Patch
 from guidance_app.guidance.trail import Run, StripTrail
 from guidance_app.model import CoverageTotals, Trail
+from guidance_app.model.making import made_quickly
 
 __all__ = ["Coverage", "cell_size"]
 
@@ -40,6 +41,7 @@ def cell_size(width: float) -> float:
     return width / math.ceil(width / wanted - 1e-9)
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class _Edge:
     """Where the implement lies at an epoch: its ends and its middle."""
@@ -62,6 +64,7 @@ class _Edge:
         )
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class _State:
     """What is at work: fractions of the width between which sections are on, none when lifted; and on which pass."""

@@ -12,6 +12,7 @@ import numpy as np
 from guidance_app.angles import wrap_pi
 from guidance_app.guidance.polyline import Foot, Polyline
 from guidance_app.model import FloatArray, Guidance, Pose, TurnGuide
+from guidance_app.model.making import made_quickly
 
 __all__ = ["Turning", "turning_of"]
 
@@ -26,6 +27,7 @@ LOST = 2.0
 Point = tuple[float, float]
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True, eq=False)
 class Turning:
     """Where along a turn's path the guided point is. A value: each epoch gives the next one."""

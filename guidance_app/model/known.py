@@ -7,6 +7,7 @@ from enum import StrEnum
 from guidance_app.model.arrays import FloatArray
 from guidance_app.model.commands import LineKind, OffsetKind, WorkMode
 from guidance_app.model.lines import Guidance, Pass, Plan
+from guidance_app.model.making import made_quickly
 from guidance_app.model.motion import Pose, Prediction
 from guidance_app.model.session import Initialised, Initialising, RollZeroProgress, SessionState
 from guidance_app.model.wire import Attitude, Fix, Satellite
@@ -39,6 +40,7 @@ class LinkStatus(StrEnum):
     ENDED = "ended"
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class LinkState:
     """The state of one link, since when, and in words why. ``what`` is what was opened, as its source calls it."""
@@ -75,6 +77,7 @@ class Ghost:
     filter_name: str = ""
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True, eq=False)
 class Snapshot:
     """All that is known now. Replaced whole; reading one needs no lock.

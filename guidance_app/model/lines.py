@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from guidance_app.model.arrays import FloatArray
+from guidance_app.model.making import made_quickly
 
 __all__ = [
     "Guidance",
@@ -33,6 +34,7 @@ class Pass:
     lap: bool = False
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class TurnGuide:
     """The turn that follows the target pass: how far away, and its path of shape (N, 2).
@@ -51,6 +53,7 @@ class TurnGuide:
     to_go: float | None = None
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class Guidance:
     """The guided point against the target pass. ``cross_track`` is positive right of the pass in travel direction.

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from guidance_app.model.arrays import FloatArray
+from guidance_app.model.making import made_quickly
 from guidance_app.model.wire import FixQuality
 
 __all__ = [
@@ -12,6 +13,7 @@ __all__ = [
 ]
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class Measurement:
     """What one epoch holds, in the field frame, as a filter takes it. Missing is None, never zero.
@@ -39,6 +41,7 @@ class Measurement:
     heading_sigma: float | None = None
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class Pose:
     """Where the reference point (centre of the rear axle, on the ground) is and how it moves.
@@ -70,6 +73,7 @@ class Pose:
         return self.curvature * self.speed
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class Prediction:
     """The pose after the look-ahead, and the arc that leads there. ``arc`` has shape (K, 2): east, north."""

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import IntEnum
 
+from guidance_app.model.making import made_quickly
+
 __all__ = [
     "ATTITUDE",
     "CORRECTIONS",
@@ -23,6 +25,7 @@ CORRECTIONS = "corrections"
 """The links of a session: the receiver, an attitude sensor on a port of its own, and the caster of corrections."""
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class Chunk:
     """Bytes as they came in. Empty bytes only tell the time, so that a half-received epoch can close."""
@@ -46,6 +49,7 @@ class FixQuality(IntEnum):
     SIMULATED = 8
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class Fix:
     """One position of one epoch, with everything else the receiver said about that instant.
@@ -86,6 +90,7 @@ class Fix:
         return self.altitude + self.geoid_separation
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class Attitude:
     """One reading of an attitude sensor. ``t`` is the sensor's own UTC second of the day where it gives one."""

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from guidance_app.model.arrays import FloatArray
+from guidance_app.model.making import made_quickly
 
 __all__ = [
     "CoverageTotals",
@@ -11,6 +12,7 @@ __all__ = [
 ]
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True, eq=False)
 class Strip:
     """A bounded piece of worked ground: left and right edge of the implement, both of shape (N, 2), N at most 256.
@@ -25,6 +27,7 @@ class Strip:
     sealed: bool
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True, eq=False)
 class Trail:
     """What grows: sealed pieces in a shared append-only list, of which the first ``count`` belong to this snapshot.
@@ -38,6 +41,7 @@ class Trail:
     open_piece: FloatArray | Strip | None
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class CoverageTotals:
     """Areas in m2. ``left`` is None without a field. ``headland`` is the part of ``worked`` outside the mainland."""

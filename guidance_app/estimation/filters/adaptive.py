@@ -62,6 +62,7 @@ from guidance_app.estimation.refused import Refused, is_lost, step_of
 from guidance_app.estimation.starting import Departure, Waiting
 from guidance_app.estimation.stillness import Stillness
 from guidance_app.model import FloatArray, Measurement, Pose
+from guidance_app.model.making import made_quickly
 
 __all__ = ["Adaptive"]
 
@@ -76,6 +77,7 @@ GYRO_BIAS_SD = 0.01
 NO_LAG = np.zeros(2)
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True, eq=False)
 class _State:
     """All that is remembered; replaced in each step, its arrays never written to.

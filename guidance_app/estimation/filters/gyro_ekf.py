@@ -33,6 +33,7 @@ from guidance_app.estimation.reference_point import offset_point
 from guidance_app.estimation.stillness import Stillness
 from guidance_app.estimation.travel import Travel
 from guidance_app.model import FloatArray, Measurement, Pose
+from guidance_app.model.making import made_quickly
 
 __all__ = ["GyroFilter", "Inputs", "antenna_position", "moved", "observation_jacobian", "transition_jacobian"]
 
@@ -51,6 +52,7 @@ MISSING_HEADING_WALK = 0.06**2
 STANDING_VARIANCE = 0.01**2
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class Inputs:
     """What drives the model over one interval: speed, acceleration and heading at its end, and its length."""
@@ -106,6 +108,7 @@ def observation_jacobian(x: FloatArray, heading: float, forward: float, left: fl
     return H
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True, eq=False)
 class _State:
     """``speed`` and ``heading`` are the inputs, not the estimates; ``x`` and ``p`` are replaced, never written to."""

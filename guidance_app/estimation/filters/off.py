@@ -12,6 +12,7 @@ from guidance_app.estimation.receiver_noise import fix_covariance
 from guidance_app.estimation.reference_point import offset_point
 from guidance_app.estimation.travel import Travel
 from guidance_app.model import Measurement, Pose
+from guidance_app.model.making import made_quickly
 
 __all__ = ["Off"]
 
@@ -19,6 +20,7 @@ STANDING = 0.1
 """Slower than this many metres a second is standing."""
 
 
+@made_quickly
 @dataclass(frozen=True, slots=True)
 class _State:
     z: Measurement
