@@ -14,6 +14,7 @@ from pydantic import Field
 
 from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.forms import Form
+from guidance_app.console.on_field import Asked, OnField
 from guidance_app.console.pages import press
 from guidance_app.console.plan_strokes import draw_plan
 from guidance_app.console.widgets import Shown, notice_html, rows_html
@@ -63,7 +64,6 @@ MEMBERS = (
     "laps_clockwise",
     "start_corner",
     "end_at_entrance",
-    "over_exclusions",
     "reverse_allowed",
     "product",
     "driver",
@@ -81,6 +81,7 @@ class _Entries(Operation):
             Direction.BEST: message("Best found"),
             Direction.TYPED: message("Typed"),
             Direction.LINE: message("Guidance line"),
+            Direction.EDGE: message("Tapped edge"),
         },
         when=("method", WITH_PASSES),
     )
@@ -127,6 +128,8 @@ class Gathered:
     receivers: tuple[str, ...]
     lines: tuple[str, ...]
     """Guidance lines that a plan can follow, of all fields."""
+    documents: Mapping[str, FieldDocument]
+    """The fields by their names."""
 
 
 def gathered_from(store: Store) -> Gathered:
@@ -139,6 +142,7 @@ def gathered_from(store: Store) -> Gathered:
         tuple(one.document.name for one in store.list(Implement)),
         tuple(one.document.name for one in store.list(Receiver)),
         tuple(lines),
+        {one.name: one for one in fields},
     )
 
 
@@ -163,6 +167,7 @@ class OperationForm:
         self._seen_plan: Plan | None = None
         self._drawn_plan: Plan | None = None
         self._drawn: tuple[Method, dict[str, Any] | None] | None = None
+        self._on_field = OnField(hands, gui, initial, gathered.documents, touched)
         names = {
             "field": [(one, one) for one in gathered.fields],
             "tractor": [(one, one) for one in gathered.tractors],
@@ -178,7 +183,11 @@ class OperationForm:
             self._units,
             options=names,
             members=MEMBERS,
-            after={"method": self._make_method},
+            after={
+                "method": self._make_method,
+                "guidance_line": self._on_field.make_edge,
+                "end_at_entrance": self._on_field.make_exclusions,
+            },
             cards=("method",),
             touched=touched,
         )
@@ -210,6 +219,11 @@ class OperationForm:
         with self._inner:
             self._options = Form(self._gui, known.options, initial, self._words, self._units, touched=self._touched)
 
+    def _asked(self, method: Method) -> Asked:
+        draft = self._form.draft
+        edge = method in WITH_PASSES and draft["direction"] == Direction.EDGE
+        return Asked(draft["field"], edge=edge, exclusions=method in PLANNED)
+
     def _cards_html(self, chosen: Method) -> str:
         cards = []
         for entry_value, label in _method_labels():
@@ -238,7 +252,7 @@ class OperationForm:
     @property
     def changed(self) -> bool:
         """Whether something was typed."""
-        return self._form.changed or (self._options is not None and self._options.changed)
+        return self._form.changed or self._on_field.changed or (self._options is not None and self._options.changed)
 
     def say(self, wrong: Mapping[str, str]) -> None:
         """Puts sentences under entries."""
@@ -251,7 +265,8 @@ class OperationForm:
     def _read(self, instead: Mapping[str, str]) -> Operation | None:
         entries = self._form.read(instead)
         options = None if self._options is None else self._options.read()
-        if entries is None or (self._options is not None and options is None):
+        placed = self._on_field.complete()
+        if entries is None or not placed or (self._options is not None and options is None):
             return None
         wrong = {
             member: self._words("A number is missing here.")
@@ -265,6 +280,9 @@ class OperationForm:
         values["laps"] = entries.laps if entries.headland == "laps" else None
         values["turning_space"] = entries.turning_space if entries.headland == "space" else None
         values["options"] = {} if options is None else options.model_dump()
+        values |= self._on_field.values()
+        if entries.direction is Direction.EDGE and values["edge_at"] is None:
+            values["direction"] = Direction.LONGEST_EDGE  # of a method that asks for no direction
         return Operation.model_validate(values)
 
     # --- the plan --------------------------------------------------------------------------------------------------
@@ -316,7 +334,8 @@ class OperationForm:
             draw_plan(self._hands.sketch, plan.segments)
 
     def close(self) -> None:
-        """The plan's strokes go with the form."""
+        """The plan's strokes go with the form, and what is marked on the field."""
+        self._on_field.close()
         if self._drawn_plan is not None:
             draw_plan(self._hands.sketch, ())
 
@@ -339,6 +358,7 @@ class OperationForm:
             else self._words(known.explanation)
         )
         self._about.show(f'<div class="g-said">{html.escape(about)}</div>')
+        self._on_field.show(self._asked(method), desk)
         if desk is not None:
             self._plan.show(self._plan_html(desk))
 

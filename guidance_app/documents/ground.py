@@ -13,6 +13,7 @@ __all__ = [
     "Geometry",
     "GuidanceLineDocument",
     "LineGeometry",
+    "Place",
     "Position",
     "Ring",
     "ShiftRecord",
@@ -22,21 +23,29 @@ Position = tuple[float, float]
 MAX_VERTICES = 100_000
 
 
+def _place(position: Position) -> Position:
+    longitude, latitude = position
+    if not (math.isfinite(longitude) and math.isfinite(latitude)):
+        msg = "a corner is not a number"
+        raise ValueError(msg)
+    if not (-180 <= longitude <= 180 and -90 <= latitude <= 90):
+        msg = (
+            f"corner {longitude:g}, {latitude:g} is not a longitude and latitude in degrees"
+            " (metres belong into the plane coordinate form)"
+        )
+        raise ValueError(msg)
+    return position
+
+
+Place = Annotated[Position, AfterValidator(_place)]
+"""A position that is checked to be one."""
+
+
 def _ring(ring: list[Position]) -> list[Position]:
     if len(ring) < 4 or ring[0] != ring[-1]:
         msg = "a ring needs at least three corners and ends where it began"
         raise ValueError(msg)
-    for longitude, latitude in ring:
-        if not (math.isfinite(longitude) and math.isfinite(latitude)):
-            msg = "a corner is not a number"
-            raise ValueError(msg)
-        if not (-180 <= longitude <= 180 and -90 <= latitude <= 90):
-            msg = (
-                f"corner {longitude:g}, {latitude:g} is not a longitude and latitude in degrees"
-                " (metres belong into the plane coordinate form)"
-            )
-            raise ValueError(msg)
-    return ring
+    return [_place(position) for position in ring]
 
 
 def _drop_height(ring: Any) -> Any:

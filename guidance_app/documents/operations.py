@@ -6,6 +6,7 @@ from typing import Literal
 from pydantic import Field, JsonValue
 
 from guidance_app.documents.base import Document, Name, choice, quantity
+from guidance_app.documents.ground import Place
 from guidance_app.language import message
 
 __all__ = ["Direction", "Method", "Operation"]
@@ -28,6 +29,7 @@ class Direction(StrEnum):
     LONGEST_EDGE = "longest-edge"
     TYPED = "typed"
     LINE = "line"
+    EDGE = "edge"
 
 
 _WITH_PASSES: list[JsonValue] = [str(Method.ROUND_TRIP), str(Method.TRANSFER), str(Method.INTERMEDIATE_DIVISION)]
@@ -62,6 +64,7 @@ class Operation(Document):
             Direction.LONGEST_EDGE: message("Longest edge"),
             Direction.TYPED: message("Typed"),
             Direction.LINE: message("Guidance line"),
+            Direction.EDGE: message("Tapped edge"),
         },
     )
     direction_deg: float = quantity(
@@ -73,6 +76,12 @@ class Operation(Document):
         max_length=120,
         description="Its name; empty: the field's first AB or A+ line",
         json_schema_extra={"when": ["direction", "line"]},
+    )
+    edge_at: Place | None = Field(
+        None,
+        title="Edge",
+        description="A place on it; followed is the straight stretch of boundary or exclusion that is nearest",
+        json_schema_extra={"when": ["direction", "edge"]},
     )
     last_pass: Literal["overlap", "even", "gap"] = choice(
         "Last pass",
@@ -115,6 +124,12 @@ class Operation(Document):
     )
     over_exclusions: bool = Field(
         default=False, title="Drive and work over the exclusions", json_schema_extra={"when": ["method", _PLANNED]}
+    )
+    passable: list[Place] = Field(
+        default_factory=list,
+        max_length=1000,
+        title="Passable exclusions",
+        description="A place inside each exclusion that is driven and worked over; all others are driven around",
     )
     reverse_allowed: bool = Field(default=True, title="The tractor may back up in a turn")
     options: dict[str, float | int | str | bool] = Field(default_factory=dict, title="Options of the method")

@@ -20,7 +20,7 @@ from guidance_app.guidance.request import LastPass, PlanError, PlanRequest
 from guidance_app.language import sentence
 from guidance_app.model import FloatArray
 
-__all__ = ["best_heading", "edge_heading", "longest_edge", "pass_heading"]
+__all__ = ["best_heading", "edge_heading", "edges_of", "longest_edge", "nearest_edge", "pass_heading"]
 
 STEP = math.radians(0.5)
 """Between the headings that are compared."""
@@ -40,8 +40,6 @@ BLOCK = 20_000
 
 def pass_heading(ground: Polygon, mainland: Sequence[Polygon], request: PlanRequest) -> float:
     """Radians in [0, 2 pi) as the request wants it."""
-    if request.edge_near is not None:
-        return edge_heading(ground, request.edge_near)
     match request.direction:
         case Direction.TYPED:
             assert request.heading is not None, "the request checks that"
@@ -51,6 +49,9 @@ def pass_heading(ground: Polygon, mainland: Sequence[Polygon], request: PlanRequ
             return heading_between(*request.line)
         case Direction.LONGEST_EDGE:
             return longest_edge(ground)
+        case Direction.EDGE:
+            assert request.edge_near is not None, "the request checks that"
+            return edge_heading(ground, request.edge_near)
         case Direction.BEST:
             return best_heading(mainland or (ground,), request)
 
@@ -64,11 +65,21 @@ def longest_edge(ground: Polygon) -> float:
 
 def edge_heading(ground: Polygon, near: tuple[float, float]) -> float:
     """Heading of the straight stretch of boundary or obstacle nearest to a place."""
-    rings = [_straightened(ring) for ring in (ground.exterior, *ground.interiors)]
-    edges = np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
-    apart = shapely.distance(shapely.linestrings(edges), shapely.Point(near))
-    first, second = edges[int(np.argmin(apart))]
+    edges = edges_of(ground)
+    first, second = edges[nearest_edge(edges, near)]
     return heading_between((float(first[0]), float(first[1])), (float(second[0]), float(second[1])))
+
+
+def edges_of(ground: Polygon) -> FloatArray:
+    """The straight stretches of boundary and obstacles, both ends of each; shape (N, 2, 2)."""
+    rings = [_straightened(ring) for ring in (ground.exterior, *ground.interiors)]
+    edges: FloatArray = np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
+    return edges
+
+
+def nearest_edge(edges: FloatArray, place: tuple[float, float]) -> int:
+    """Which of ``edges_of`` lies nearest to a place."""
+    return int(np.argmin(shapely.distance(shapely.linestrings(edges), shapely.Point(place))))
 
 
 def best_heading(mainland: Sequence[Polygon], request: PlanRequest) -> float:

@@ -61,9 +61,9 @@ class Body:
 class PlanRequest:
     """The wishes for one plan. Metres, radians, seconds; ``heading`` is that of the passes when it is typed.
 
-    ``line`` is an AB line whose offset is kept, ``edge_near`` a point near the edge to follow. ``laps`` goes before
-    ``turning_space``; with neither the headland is as deep as a turn needs. ``passable`` names holes, from 0, that may
-    be driven and worked over; ``over_exclusions`` says so of all.
+    ``line`` is an AB line whose offset is kept, ``edge_near`` a point near the edge that ``Direction.EDGE`` follows.
+    ``laps`` goes before ``turning_space``; with neither the headland is as deep as a turn needs. ``passable`` names
+    holes, from 0, that may be driven and worked over; ``over_exclusions`` says so of all.
     """
 
     width: float
@@ -140,6 +140,9 @@ class PlanRequest:
     def _check_line(self) -> None:
         if self.direction is Direction.LINE and self.line is None:
             msg = sentence("the passes are to follow a guidance line, but none is given")
+            raise PlanError(msg)
+        if self.direction is Direction.EDGE and self.edge_near is None:
+            msg = sentence("the passes are to follow an edge of the field, but none is tapped")
             raise PlanError(msg)
         if self.line is not None and not math.dist(*self.line) > 0.1:
             msg = sentence("the guidance line's two points are the same place, so it has no direction")

@@ -1,10 +1,15 @@
 """What a plan is asked for by documents: tractor, implement, operation, and the field's entrance and guidance lines."""
 
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-from guidance_app.boundary import frame_of
+import numpy as np
+import shapely
+
+from guidance_app.boundary import frame_of, polygon_in
 from guidance_app.documents import (
     Direction,
     FieldDocument,
@@ -19,12 +24,32 @@ from guidance_app.geodesy import FieldFrame
 from guidance_app.guidance.request import LastPass, PlanError, PlanRequest
 from guidance_app.language import sentence
 
-__all__ = ["request_from_documents", "request_of"]
+__all__ = ["Places", "exclusions_with", "request_from_documents", "request_of"]
 
 STRAIGHT = ("ab", "a-plus")
 """Kinds of guidance lines that straight passes can lie beside."""
 
+MOVED = 10.0
+"""Metres from a tapped place to the boundary, up to which its edge was only moved and is still there."""
+
 _Place = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """What an operation says of places on its field, in the field's frame.
+
+    ``line`` is the guidance line, ``edge`` a place near the edge that the passes follow; ``passable`` numbers the
+    exclusions that are driven over, from 0.
+    """
+
+    start: _Place | None = None
+    line: tuple[_Place, _Place] | None = None
+    edge: _Place | None = None
+    passable: frozenset[int] = frozenset()
+
+
+NO_PLACES = Places()
 
 
 def request_of(job: Job) -> PlanRequest:
@@ -32,25 +57,22 @@ def request_of(job: Job) -> PlanRequest:
     assert job.field is not None, "a plan is made for a field"
     frame = frame_of(job.field.boundary)
     start = None if job.field.entrance is None else _place(job.field.entrance, frame)
-    line = None
-    if job.operation is not None and job.operation.direction is Direction.LINE:
-        line = _line(job.field, job.operation.guidance_line, frame)
-    return request_from_documents(job.tractor, job.implement, job.operation, start, line)
+    places = Places(start) if job.operation is None else _places(job.field, job.operation, frame, start)
+    return request_from_documents(job.tractor, job.implement, job.operation, places)
 
 
 def request_from_documents(
     tractor: Tractor,
     implement: Implement,
     operation: Operation | None = None,
-    start: _Place | None = None,
-    line: tuple[_Place, _Place] | None = None,
+    places: Places = NO_PLACES,
 ) -> PlanRequest:
     """The request of a saved operation; without one, round trip along the longest edge. Raises ``PlanError``.
 
-    ``line`` is the guidance line that an operation along one needs. A trailed implement is not backed up: the tractor
-    then turns forwards only.
+    An operation along a guidance line or an edge needs it among ``places``. A trailed implement is not backed up: the
+    tractor then turns forwards only.
     """
-    chosen = {} if operation is None else _chosen(operation, start)
+    chosen = {} if operation is None else _chosen(operation, places.start)
     reverse_allowed = chosen.pop("reverse_allowed", True) and implement.hitch is HitchKind.MOUNTED
     behind = implement.offset_back
     if implement.hitch is HitchKind.TRAILED:
@@ -64,8 +86,10 @@ def request_from_documents(
         length=implement.length,
         wheelbase=tractor.wheelbase,
         track_width=tractor.track_width,
-        start=start,
-        line=line,
+        start=places.start,
+        line=places.line,
+        edge_near=places.edge,
+        passable=places.passable,
         reverse_allowed=reverse_allowed,
         **chosen,
     )
@@ -88,6 +112,43 @@ def _chosen(operation: Operation, start: _Place | None) -> dict[str, Any]:
         "over_exclusions": operation.over_exclusions,
         "reverse_allowed": operation.reverse_allowed,
     }
+
+
+def _places(field: FieldDocument, operation: Operation, frame: FieldFrame, start: _Place | None) -> Places:
+    line = edge = None
+    if operation.direction is Direction.LINE:
+        line = _line(field, operation.guidance_line, frame)
+    if operation.direction is Direction.EDGE and operation.edge_at is not None:
+        edge = _edge(field, operation, operation.edge_at, frame)
+    return Places(start, line, edge, exclusions_with(field, operation.passable))
+
+
+def _edge(field: FieldDocument, operation: Operation, at: Position, frame: FieldFrame) -> _Place:
+    """The tapped place; an edge that is gone is said so, because another one would be another direction.
+
+    Exclusions that are driven over have no edges.
+    """
+    place = _place(at, frame)
+    polygon = polygon_in(frame, field.boundary)
+    over = exclusions_with(field, operation.passable)
+    left = [] if operation.over_exclusions else [r for n, r in enumerate(polygon.interiors) if n not in over]
+    away = shapely.Polygon(polygon.exterior, left).boundary.distance(shapely.Point(place))
+    if away > MOVED:
+        msg = sentence(
+            "the tapped edge of the field '{field}' is not there any more: tap an edge again", field=field.name
+        )
+        raise PlanError(msg)
+    return place
+
+
+def exclusions_with(field: FieldDocument, places: Sequence[Position]) -> frozenset[int]:
+    """The numbers, from 0, of the exclusions in which one of these places lies.
+
+    An exclusion that was moved away from its place is one to drive around.
+    """
+    points = shapely.points(np.asarray(places, dtype=float).reshape(-1, 2))
+    holes = [shapely.Polygon(ring) for ring in field.boundary.coordinates[1:]]
+    return frozenset(number for number, hole in enumerate(holes) if bool(shapely.covers(hole, points).any()))
 
 
 def _line(field: FieldDocument, name: str, frame: FieldFrame) -> tuple[_Place, _Place]:

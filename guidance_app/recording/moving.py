@@ -17,11 +17,11 @@ from decimal import Decimal, InvalidOperation
 from functools import reduce
 from itertools import accumulate
 from operator import xor
-from typing import Any
+from typing import Any, TypeVar
 
 from guidance_app.decode.nmea import SENTENCES, read_line
 from guidance_app.decode.sentence import DecodeError
-from guidance_app.documents import FieldDocument, Job
+from guidance_app.documents import FieldDocument, Job, Operation
 from guidance_app.model import Chunk, Command, Commanded, Event
 
 __all__ = ["MovedEvents", "longitudes_of", "moved_events", "moved_job", "possible_moves"]
@@ -30,6 +30,10 @@ LEAST_MOVE = 10
 HALF_CIRCLE = 180
 MINUTES = 60
 LONGITUDE = "longitude_deg"
+PLACES = frozenset({"coordinates", "entrance", "origin", "edge_at", "passable"})
+"""Members of documents that hold positions."""
+
+D = TypeVar("D", FieldDocument, Operation)
 
 _find_sentences = re.compile(rb"[$#][^\r\n$]*").finditer
 _digits = bytes.maketrans(b"123456789", b"000000000")
@@ -64,11 +68,13 @@ def longitudes_of(job: Job) -> tuple[float, ...]:
 
 
 def moved_job(job: Job, degrees: int) -> Job:
-    """The documents with their field moved."""
+    """The documents with their field moved, and what an operation says of places on it."""
     if job.field is None:
         return job
-    members = _moved_members(job.field.model_dump(mode="json"), degrees)
-    return job.model_copy(update={"field": FieldDocument.model_validate(members)})
+    changes: dict[str, Any] = {"field": _moved_document(job.field, degrees)}
+    if job.operation is not None:
+        changes["operation"] = _moved_document(job.operation, degrees)
+    return job.model_copy(update=changes)
 
 
 def moved_events(events: Iterable[Event], degrees: int) -> MovedEvents:
@@ -93,6 +99,10 @@ def moved_events(events: Iterable[Event], degrees: int) -> MovedEvents:
 # --- documents and commands ------------------------------------------------------------------------------------------
 
 
+def _moved_document(document: D, degrees: int) -> D:
+    return type(document).model_validate(_moved_members(document.model_dump(mode="json"), degrees))
+
+
 def _moved_members(members: Any, degrees: int) -> Any:
     """JSON members with every position moved: GeoJSON coordinates, and whatever is called a longitude."""
     if isinstance(members, dict):
@@ -103,7 +113,7 @@ def _moved_members(members: Any, degrees: int) -> Any:
 
 
 def _moved_member(name: str, value: Any, degrees: int) -> Any:
-    if name in {"coordinates", "entrance", "origin"}:
+    if name in PLACES:
         return _moved_places(value, degrees)
     if name == LONGITUDE and isinstance(value, (int, float)):
         return _moved_degrees(value, degrees)

@@ -30,6 +30,7 @@ HEADINGS = {
     Direction.LONGEST_EDGE: message("longest edge"),
     Direction.TYPED: message("typed"),
     Direction.LINE: message("line"),
+    Direction.EDGE: message("tapped edge"),
 }
 
 

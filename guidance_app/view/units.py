@@ -9,7 +9,7 @@ from typing import assert_never
 from guidance_app.documents import Units
 from guidance_app.language import Words
 
-__all__ = ["area_text", "distance_text", "length_text", "offset_text", "speed_text", "speed_unit"]
+__all__ = ["area_text", "distance_text", "length_text", "offset_text", "small_area_text", "speed_text", "speed_unit"]
 
 INCH = 0.0254
 FOOT = 0.3048
@@ -17,6 +17,8 @@ MILE = 1609.344
 ACRE = 4046.8564224
 ARE = 100.0
 HECTARE = 10_000.0
+SMALL_AREA = 1000.0
+"""Square metres; less is not told in hectares."""
 TAN = 300 * 400 / 121
 """300 tsubo, each 400/121 m2 by the Japanese law on measures of 1891; ten are a chō."""
 
@@ -66,6 +68,15 @@ def area_text(square_metres: float, units: Units, words: Words) -> str:
             return f"{_short(square_metres / HECTARE, 2, words)} ha"
         case _:
             assert_never(units)
+
+
+def small_area_text(square_metres: float, units: Units, words: Words) -> str:
+    """``320 m²``, ``3,440 ft²``; from 1,000 m² on as ``area_text`` has it."""
+    if square_metres >= SMALL_AREA:
+        return area_text(square_metres, units, words)
+    if units is Units.IMPERIAL:
+        return f"{words.number(square_metres / FOOT**2)} ft²"
+    return f"{words.number(square_metres)} m²"
 
 
 def _short(number: float, decimals: int, words: Words) -> str:

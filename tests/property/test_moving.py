@@ -86,6 +86,9 @@ def test_bytes_cut_anywhere_are_moved_alike(seed: int, degrees: int) -> None:
 
 def test_documents_and_commands_move_with_the_bytes() -> None:
     job = a_job()
+    assert job.operation is not None
+    places = {"edge_at": (8.5, 47.5001), "passable": [(8.5004, 47.5)]}
+    job = job.model_copy(update={"operation": job.operation.model_copy(update=places)})
     for degrees in (possible_moves(job)[0], 25, possible_moves(job)[-1]):
         other = moved_job(job, degrees)
         assert job.field is not None
@@ -99,6 +102,9 @@ def test_documents_and_commands_move_with_the_bytes() -> None:
         for before, after in zip(here.exterior.coords, there.exterior.coords, strict=True):
             assert math.dist(before, after) < MILLIMETRE
         assert other.tractor == job.tractor
+        assert other.operation is not None
+        assert other.operation.edge_at == (pytest.approx(8.5 + degrees), 47.5001)
+        assert other.operation.passable == [(pytest.approx(8.5004 + degrees), 47.5)]
     events = (SourceUp(0.0, "x"), Commanded(1.0, OnTheMark(47.5, 8.5)), Commanded(2.0, Nudge(0.1)))
     moved = moved_events(events, 25).events
     assert moved == (events[0], Commanded(1.0, OnTheMark(47.5, 33.5)), events[2])

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
+from pydantic import ValidationError
 
 from guidance_app.boundary import frame_of, polygon_in
 from guidance_app.documents import (
@@ -38,7 +39,7 @@ LINE = np.array([[-50.0, -31.7], [61.0, -12.4]])
 
 def degrees(points: FloatArray) -> list[tuple[float, float]]:
     found = [(float(lon), float(lat)) for lon, lat in FRAME.lonlat_from_array(points)]
-    return [*found[:-1], found[0]] if np.array_equal(points[0], points[-1]) else found
+    return [*found[:-1], found[0]] if len(points) > 1 and np.array_equal(points[0], points[-1]) else found
 
 
 def a_job(**wishes: Any) -> Job:
@@ -106,6 +107,52 @@ def test_exclusions_are_driven_round_or_over() -> None:
     assert any(shapely.LineString(each.points).intersects(pond) for each in passes(over))
 
 
+def test_one_exclusion_is_driven_over_and_the_other_one_round() -> None:
+    second = POND + np.array([60.0, 0.0])
+    job = a_job(passable=degrees(np.array([[1.0, 5.0]])))
+    assert job.field is not None
+    geometry = Geometry(coordinates=[*job.field.boundary.coordinates, degrees(second)])
+    job = job.model_copy(update={"field": job.field.model_copy(update={"boundary": geometry})})
+    plan, polygon = plan_of(job)
+    over, around = (shapely.Polygon(ring).buffer(-CENTIMETRE) for ring in polygon.interiors)
+    assert any(shapely.LineString(each.points).intersects(over) for each in passes(plan))
+    assert not any(shapely.LineString(each.points).intersects(around) for each in plan.segments if each.fits)
+
+
+def test_a_passable_place_that_lies_in_no_exclusion_opens_none() -> None:
+    request = request_of(a_job(passable=degrees(np.array([[-60.0, -30.0]]))))
+    assert request.passable == frozenset()
+
+
+def test_the_tapped_edge_of_an_operation_gives_the_direction_and_outlives_a_shift() -> None:
+    for shift in (0.0, 3.0):
+        at = degrees(np.array([[100.0 + shift, 10.0]]))[0]
+        plan, _ = plan_of(a_job(direction=Direction.EDGE, edge_at=at))
+        assert abs(math.sin(plan.direction)) < math.radians(0.1)
+
+
+@pytest.mark.parametrize(
+    ("at", "wishes"),
+    [((40.0, 30.0), {}), ((-10.0, 5.0), {"over_exclusions": True})],
+    ids=["in the middle", "of an exclusion that is driven over"],
+)
+def test_a_tapped_edge_that_is_gone_is_said(at: tuple[float, float], wishes: Mapping[str, Any]) -> None:
+    with pytest.raises(PlanError, match="the tapped edge of the field 'F' is not there any more"):
+        request_of(a_job(direction=Direction.EDGE, edge_at=degrees(np.array([at]))[0], **wishes))
+
+
+def test_passes_along_an_edge_need_one() -> None:
+    with pytest.raises(PlanError, match="none is tapped"):
+        request_of(a_job(direction=Direction.EDGE))
+
+
+@pytest.mark.parametrize("place", [(math.nan, 47.5), (500_000.0, 47.5), (8.5, -91.0)])
+def test_an_operation_takes_no_place_that_is_not_on_earth(place: tuple[float, float]) -> None:
+    for wrong in ({"edge_at": place}, {"passable": [place]}):
+        with pytest.raises(ValidationError, match=r"corner|longitude"):
+            a_job(**wrong)
+
+
 def clockwise(lap: Segment) -> bool:
     return not shapely.is_ccw(shapely.linearrings(lap.points))
 
@@ -163,7 +210,7 @@ def test_work_begins_at_the_corner_that_is_wished(corner: str) -> None:
 
 def test_the_edge_that_is_tapped_gives_the_direction() -> None:
     field = shapely.Polygon([(0, 0), (200, 0), (200, 90), (0, 140)])
-    plan = plan_operation(field, PlanRequest(width=9.0, edge_near=(100.0, 118.0)))
+    plan = plan_operation(field, PlanRequest(width=9.0, direction=Direction.EDGE, edge_near=(100.0, 118.0)))
     wanted = math.atan2(200, -50)
     assert abs(math.sin(plan.direction - wanted)) < 1e-6
 
