@@ -4,11 +4,14 @@ from collections.abc import Iterator
 
 import pytest
 import viser
+from support.drives import a_job, path_chunks, up_and_down
 from support.snapshots import SetSession, field_snapshot
 from support.stage import Stage, running_viser
 from support.viser_client import viser_client
 
 from guidance_app.model import SkipPass
+from guidance_app.runtime import ReplaySession
+from guidance_app.sources.file import FileLog
 
 
 @pytest.fixture
@@ -63,3 +66,24 @@ def test_nobody_starts_or_ends_a_drive_from_a_tablet_that_follows(server: viser.
         stage.tick_until(second, lambda: any("Another tablet" in str(one) for one in second.messages))
         assert stage.screen._house.driving
         assert first.control("Skip")
+
+
+def test_a_tablet_that_follows_does_not_steer_the_recording(server: viser.ViserServer) -> None:
+    drive = b"".join(chunk.data for chunk in path_chunks(up_and_down()))
+    session = ReplaySession(a_job(), FileLog("a drive", drive))
+    session.start()
+    stage = Stage(server, session)
+    try:
+        with viser_client(server) as first:
+            stage.tick_until(first, lambda: first.control("Pause"))
+            with viser_client(server) as second:
+                stage.tick_until(second, lambda: "Tablet 1 has the wheel" in second.words())
+                for words in ("Pause", "50", "Next"):
+                    second.press(words)
+                stage.tick_until(second, lambda: sum("Another tablet" in str(one) for one in second.messages) >= 3)
+                assert session.replay.state.playing
+                assert session.replay.state.speed == 1.0
+                first.press("Pause")
+                stage.tick_until(first, lambda: not session.replay.state.playing)
+    finally:
+        session.close()

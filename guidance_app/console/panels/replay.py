@@ -1,5 +1,6 @@
 """The replay panel: play, pause, how fast, and to any second of the recording."""
 
+from collections.abc import Callable
 from typing import ClassVar
 
 import viser
@@ -8,7 +9,7 @@ from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.reviewing.comparing import Comparing
 from guidance_app.console.widgets import Choice, Followed, Shown, buttons, notice_html, rows_html
 from guidance_app.language import message
-from guidance_app.runtime import ReplayControl, ReplaySession
+from guidance_app.runtime import ReplaySession
 from guidance_app.view.status import clock, replay_rows
 
 __all__ = ["Replay"]
@@ -18,7 +19,7 @@ _NAMES = {speed: name for name, speed in _SPEEDS.items()}
 
 
 class Replay:
-    """Steers the recording; there only when one is played."""
+    """Steers the recording for all who look at it, so it asks for the wheel; there only when one is played."""
 
     title: ClassVar[str] = message("Replay")
 
@@ -29,23 +30,32 @@ class Replay:
             raise ValueError(msg)
         self._words = words = hands.words
         self._control = control
+
+        def steer(action: Callable[[], object]) -> None:
+            if hands.wheel.mine():
+                action()
+
         state = control.state
         self._play = gui.add_button(words("Pause"), color="green")
 
         @self._play.on_click
         async def _(_: object) -> None:
-            if control.state.playing:
-                control.pause()
-            else:
-                control.play()
+            steer(control.pause if control.state.playing else control.play)
 
         end = max(round(state.duration), 1)
         slider = gui.add_slider("00:00", 0, end, 1, 0, marks=((0, words("start")), (end, clock(state.duration))))
         self._slider = slider
-        self._position = Followed(slider, lambda second: control.seek(float(second)))
-        steps = ((words("Before"), lambda: _step(control, -1)), (words("Next"), lambda: _step(control, 1)))
+        self._position = Followed(slider, lambda second: steer(lambda: control.seek(float(second))))
+        steps = (
+            (words("Before"), lambda: steer(lambda: control.step_pass(-1))),
+            (words("Next"), lambda: steer(lambda: control.step_pass(1))),
+        )
         self._passes = buttons(gui, words("Pass"), steps)
-        self._speed = Choice(gui, words("Speed ×"), tuple(_SPEEDS), lambda name: control.set_speed(_SPEEDS[name]))
+
+        def run_at(name: str) -> None:
+            steer(lambda: control.set_speed(_SPEEDS[name]))
+
+        self._speed = Choice(gui, words("Speed ×"), tuple(_SPEEDS), run_at)
         self._rows = Shown(gui)
         self._notices = Shown(gui)
         session = hands.house.manager.session
@@ -70,8 +80,3 @@ class Replay:
         self._notices.show(notice_html(notices))
         if self._comparing is not None:
             self._comparing.show(desk)
-
-
-def _step(control: ReplayControl, steps: int) -> None:
-    """To the start of a pass; where there is none known, nothing happens."""
-    control.step_pass(steps)
