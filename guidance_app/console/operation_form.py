@@ -164,8 +164,7 @@ class OperationForm:
         self._options: Form[PatternOptions] | None = None
         self._shown_job: Job | None = None
         self._said = ""
-        self._seen_plan: Plan | None = None
-        self._drawn_plan: Plan | None = None
+        self._drawn_plan: tuple[Plan, int] | None = None
         self._drawn: tuple[Method, dict[str, Any] | None] | None = None
         self._on_field = OnField(hands, gui, initial, gathered.documents, touched)
         names = {
@@ -326,12 +325,11 @@ class OperationForm:
         return notices + rows_html(plan_cost_rows(plan, self._units, self._words))
 
     def _draw(self, plan: Plan) -> None:
-        """Not at the first sight of the plan: another field begins the scene anew, and would take the strokes away."""
-        if plan is not self._seen_plan:
-            self._seen_plan = plan
-        elif plan is not self._drawn_plan:
-            self._drawn_plan = plan
-            draw_plan(self._hands.sketch, plan.segments)
+        """Again when another field begins the scene anew, which takes the strokes away."""
+        sketch, drawn = self._hands.sketch, self._drawn_plan
+        if drawn is None or drawn[0] is not plan or drawn[1] != sketch.scene_number:
+            self._drawn_plan = plan, sketch.scene_number
+            draw_plan(sketch, plan.segments)
 
     def close(self) -> None:
         """The plan's strokes go with the form, and what is marked on the field."""

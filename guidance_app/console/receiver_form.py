@@ -64,7 +64,8 @@ class ReceiverForm:
         del gathered
         self._words = hands.words
         self._hands = hands
-        self._found: dict[str, str] = {}
+        self._found: dict[str, str] | None = None
+        """Addresses by what a person reads; None until the system was asked. The worker leaves them."""
         self._plugged: Any = gui.add_dropdown(hands.words("Take from"), (hands.words("looking …"),))
         filters = [(name, words[0]) for name, words in FILTER_WORDS.items() if name != "off"]
         self._form = Form(
@@ -81,7 +82,7 @@ class ReceiverForm:
 
         @self._plugged.on_update
         async def _(event: viser.GuiEvent[viser.GuiDropdownHandle[str]]) -> None:
-            uri = self._found.get(event.target.value)
+            uri = (self._found or {}).get(event.target.value)
             if event.client_id is not None and uri is not None:
                 self._form.set("source", uri)
 
@@ -89,11 +90,14 @@ class ReceiverForm:
 
     def _look(self) -> None:
         """The ports that are there now, and what needs none."""
-        words = self._words
-        typed = words("as typed below")
-        self._found = sources_found(words, self._hands.house.list_ports)
-        self._plugged.options = (typed, *self._found)
-        self._plugged.value = typed
+        self._found = sources_found(self._words, self._hands.house.list_ports)
+        self._hands.soon()
+
+    def _offer(self) -> None:
+        typed = self._words("as typed below")
+        if self._found is not None and tuple(self._plugged.options) != (typed, *self._found):
+            self._plugged.options = (typed, *self._found)
+            self._plugged.value = typed
 
     @property
     def changed(self) -> bool:
@@ -120,7 +124,8 @@ class ReceiverForm:
         """It draws nothing outside of its panel."""
 
     def show(self, desk: Desk | None = None) -> None:
-        """The sentence follows the chosen filter."""
+        """The list follows what was found, the sentence the chosen filter."""
+        self._offer()
         self._form.show(desk)
         about = FILTER_WORDS.get(str(self._form.draft["filter"]))
         self._about.show("" if about is None else f'<div class="g-said">{html.escape(self._words(about[1]))}</div>')

@@ -40,7 +40,7 @@ def ground_point(
 
 
 class Sketch:
-    """Draws over one client's map. Its methods may be called from any thread; ``world`` tells how the map lies."""
+    """Draws over one client's map. The redraw alone calls its methods; ``world`` tells how the map lies."""
 
     def __init__(self, client: viser.ClientHandle, world: Callable[[], WorldPose], root: str) -> None:
         self._client = client
@@ -50,6 +50,12 @@ class Sketch:
         self._picture: viser.SceneNodeHandle | None = None
         self._tapped: Tapped | None = None
         self._listens = False
+        self._scene_number = 0
+
+    @property
+    def scene_number(self) -> int:
+        """Another one when the scene was made anew: then all that was drawn is gone."""
+        return self._scene_number
 
     def line(self, name: str, points: FloatArray | Sequence[tuple[float, float]], colour: Rgb = SKETCHED) -> None:
         """A line through these points, shape (N, 2); fewer than two take it away."""
@@ -119,11 +125,6 @@ class Sketch:
         if glb is not None:
             self._picture = self._client.scene.add_glb(f"{self._root}/picture", glb, cast_shadow=False)
 
-    @property
-    def has_picture(self) -> bool:
-        """False when the scene was made anew since ``picture``."""
-        return self._picture is not None
-
     def remove(self, name: str) -> None:
         """Takes one part away; one that is not there is no error."""
         node = self._nodes.pop(name, None)
@@ -138,11 +139,12 @@ class Sketch:
 
     def forget(self) -> None:
         """The scene was made anew: nothing of the sketch is left there."""
+        self._scene_number += 1
         self._nodes.clear()
         self._picture = None
 
     def hear_taps(self, tapped: Tapped | None) -> None:
-        """From now on each tap on the ground calls ``tapped`` with east and north; None ends that."""
+        """From now on each tap on the ground calls ``tapped``, on viser's loop, with east and north; None ends that."""
         self._tapped = tapped
         if tapped is not None and not self._listens:
             self._listens = True

@@ -9,7 +9,6 @@ import pytest
 import shapely
 import viser
 from support.snapshots import strip, trail
-from support.stage import running_viser
 from support.viser_client import viser_client
 
 from guidance_app.console.growing import OPEN, SEALED, STAGED, Growing, Ribbon, TrackLine, ribbon_faces
@@ -27,13 +26,6 @@ MOST_BYTES_AN_HOUR = 4_000_000
 """The medium node grows from nothing to 4,096 rows and begins again; even where it is largest, about 1 kB/s."""
 
 SQUARE_METRE = 1.0
-
-
-@pytest.fixture
-def server() -> Iterator[viser.ViserServer]:
-    """viser on a free port."""
-    with running_viser() as running:
-        yield running
 
 
 class Day:

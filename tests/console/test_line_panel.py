@@ -1,22 +1,15 @@
 """The line panel: there without a plan alone, and every button posts what it says."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
 import viser
 from support.snapshots import SetSession, field_snapshot
-from support.stage import Stage, running_viser
+from support.stage import Stage
 from support.viser_client import ViserClient
 
 from guidance_app.model import BeginLine, Command, DropLine, EndLine, LineKind
-
-
-@pytest.fixture
-def server() -> Iterator[viser.ViserServer]:
-    """viser on a free port."""
-    with running_viser() as running:
-        yield running
 
 
 @pytest.fixture

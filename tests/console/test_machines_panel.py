@@ -7,17 +7,9 @@ from pathlib import Path
 import pytest
 import viser
 from support.setup_place import SetupPlace, setup_place
-from support.stage import running_viser
 
 from guidance_app.documents import Implement, Operation, Receiver, Settings, Tractor, Units
 from guidance_app.store import Store, copy_sample
-
-
-@pytest.fixture(scope="module")
-def server() -> Iterator[viser.ViserServer]:
-    """viser on a free port."""
-    with running_viser() as running:
-        yield running
 
 
 @pytest.fixture

@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 import viser
 from support.setup_place import SetupPlace, setup_place
-from support.stage import running_viser
 
 from guidance_app.documents import (
     Direction,
@@ -19,13 +18,6 @@ from guidance_app.documents import (
     Tractor,
 )
 from guidance_app.store import Store, copy_sample
-
-
-@pytest.fixture(scope="module")
-def server() -> Iterator[viser.ViserServer]:
-    """viser on a free port."""
-    with running_viser() as running:
-        yield running
 
 
 @pytest.fixture

@@ -1,31 +1,26 @@
 """The recordings panel: what was driven is found, shown on the map, compared, replayed and handed in."""
 
 import io
-import re
 import shutil
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 import viser
 from support.recordings import driven_live
-from support.stage import running_viser
-from support.viser_client import ViserClient, viser_client
+from support.setup_place import SetupPlace, setup_place
 
 from guidance_app.batch.reviewing import additions_of
 from guidance_app.console.files import Download, NotMadeError
-from guidance_app.console.house import House
-from guidance_app.console.screen import Screen
 from guidance_app.exchange.drives import DRIVE_WRITERS
-from guidance_app.runtime import ReplaySession, SessionManager
+from guidance_app.runtime import ReplaySession
 from guidance_app.sources.file import load_log
 from guidance_app.store import SAMPLE_RECORDING, Store, copy_sample, load_job
 from guidance_app.store.recordings import open_recording
 from guidance_app.store.recordings_list import list_recordings
 
-MOST_REDRAWS = 2000
-SOON_S = 0.03
+TIME_LOGS = "time logs becomes a recording"
 
 
 @pytest.fixture(scope="module")
@@ -39,119 +34,82 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-class Office:
-    """A console where nothing is driven, and one client that looks back."""
-
-    def __init__(self, house: House, screen: Screen, client: ViserClient) -> None:
-        self.house, self.screen, self.client = house, screen, client
-
-    def until(self, true: Callable[[], object]) -> None:
-        for _ in range(MOST_REDRAWS):
-            self.screen.tick()
-            if self.client.soon(true, SOON_S):
-                return
-        pytest.fail("it did not happen; the panels say: " + self.client.words()[-3000:])
-
-    def says(self, pattern: str) -> None:
-        self.until(lambda: re.search(pattern, self.client.words()))
-
-    def told(self, words: str) -> None:
-        self.until(lambda: any(words in str(one) for one in self.client.heard("NotificationShowMessage")))
-
-    def label(self, pattern: str) -> str:
-        labels = [str(one["props"].get("label")) for one in self.client.controls.values()]
-        return next(one for one in labels if re.search(pattern, one))
-
-    def list_is_drawn(self) -> None:
-        """Both drives with their maps: nothing works on the folders any more."""
-        self.says("Look at")
-        self.until(lambda: self.client.words().count("<svg width") >= 2)
-
-    def open_newest(self) -> None:
-        self.list_is_drawn()
-        self.client.press(self.label("Look at"))
-        self.until(lambda: "/w/sketch/review" in self.client.nodes)
-
-
 @pytest.fixture
-def office(data: Path) -> Iterator[Office]:
+def office(server: viser.ViserServer, data: Path) -> Iterator[SetupPlace]:
     """The console's setup place on the data folder."""
-    manager = SessionManager()
-    manager.start()
-    house = House(manager, Store(data))
-    with running_viser() as server:
-        yield from _opened(server, house)
-    house.close()
-    manager.close()
+    with setup_place(server, data) as one:
+        yield one
 
 
-def _opened(server: viser.ViserServer, house: House) -> Iterator[Office]:
-    screen = Screen(server, house)
-    screen.attach()
-    with viser_client(server) as client:
-        yield Office(house, screen, client)
+def list_is_drawn(office: SetupPlace) -> None:
+    """Both drives with their maps: nothing works on the folders any more."""
+    office.label("Look at")
+    office.until(lambda: office.client.words().count("<svg width") >= 2)
 
 
-def test_the_list_has_every_drive_with_its_map(office: Office) -> None:
+def open_newest(office: SetupPlace) -> None:
+    """The page of the newest drive, whole."""
+    list_is_drawn(office)
+    office.client.press(office.label("Look at"))  # the first of two drives of the same minute
+    office.sees("/w/sketch/review")
+    office.until(lambda: office.newest("Delete this recording"))
+
+
+def test_the_list_has_every_drive_with_its_map(office: SetupPlace) -> None:
     office.says("Sample field · Round trip")
     office.until(lambda: office.client.words().count("<svg width") >= 2)
 
 
-def test_a_drive_is_shown_in_colours_with_its_numbers(office: Office) -> None:
-    office.open_newest()
+def test_a_drive_is_shown_in_colours_with_its_numbers(office: SetupPlace) -> None:
+    open_newest(office)
     office.says("up to 5 cm")
     office.says("<th>rms</th>")
     before = len(office.client.heard("LineSegmentsMessage", name="/w/sketch/review"))
-    office.client.press("Speed")
+    office.press("Speed")
     office.says("km/h")
     office.until(lambda: len(office.client.heard("LineSegmentsMessage", name="/w/sketch/review")) > before)
-    office.until(lambda: "/w/field/boundary" in office.client.nodes)
+    office.sees("/w/field/boundary")
 
 
-def test_two_drives_are_compared(office: Office, data: Path) -> None:
-    office.open_newest()
+def test_two_drives_are_compared(office: SetupPlace, data: Path) -> None:
+    open_newest(office)
     other = min(one.path.name for one in list_recordings(data) if one.summary is not None)
-    office.until(lambda: office.client.control("Compare with"))
-    options = office.client.control("Compare with")["props"]["options"]  # type: ignore[index]  # it was there
+    compared = office.newest("Compare with")
+    assert compared is not None
+    options = compared["props"]["options"]
     assert other in options or len(options) == 2
-    office.client.set("Compare with", options[1])
+    office.fill("Compare with", options[1])
     office.says("other rms")
-    office.until(lambda: "/w/sketch/review-other" in office.client.nodes)
-    office.client.set("Compare with", options[0])
-    office.until(lambda: "/w/sketch/review-other" not in office.client.nodes)
+    office.sees("/w/sketch/review-other")
+    office.fill("Compare with", options[0])
+    office.sees_no("/w/sketch/review-other")
 
 
-def test_the_ledger_keeps_what_the_driver_adds(office: Office, data: Path) -> None:
-    office.open_newest()
-    office.client.set("Product", "小麦 <b>")
-    office.client.press("Keep")
+def test_the_ledger_keeps_what_the_driver_adds(office: SetupPlace, data: Path) -> None:
+    open_newest(office)
+    office.fill("Product", "小麦 <b>")
+    office.press("Keep")
     paths = [one.path for one in list_recordings(data) if one.summary is not None]
     office.until(lambda: any(additions_of(path).product == "小麦 <b>" for path in paths))
-    addresses = re.findall(r"/download/([\w-]+)\"[^>]*>Ledger as PDF", office.client.words())
-    make = office.house.files.maker(addresses[0])
-    assert make is not None
-    made = make()
-    assert made is not None
-    assert made.data.startswith(b"%PDF")
+    assert office.made("Ledger as PDF").data.startswith(b"%PDF")
 
 
-def test_a_drive_is_replayed_from_the_list(office: Office) -> None:
-    office.open_newest()
-    office.client.press("Replay")
-    office.until(lambda: office.client.control("Skip"))
+def test_a_drive_is_replayed_from_the_list(office: SetupPlace) -> None:
+    open_newest(office)
+    office.press("Replay")
+    office.until(lambda: office.newest("Skip"))
     assert office.house.manager.replay is not None
 
 
-def test_a_replay_is_played_again_beside_another_filter_and_without_it(office: Office) -> None:
-    office.open_newest()
-    office.client.press("Replay")
-    office.until(lambda: office.client.control("Play again with both"))
-    office.client.press("Play again with both")
-    office.told("Change the filter")
+def test_a_replay_is_played_again_beside_another_filter_and_without_it(office: SetupPlace) -> None:
+    open_newest(office)
+    office.press("Replay")
+    office.press("Play again with both")
+    office.says("Change the filter")
     first = office.house.manager.session
-    office.client.set("Filter", "None")
-    office.client.set("Antenna forward (m)", 1.25)
-    office.client.press("Play again with both")
+    office.fill("Filter", "None")
+    office.fill("Antenna forward (m)", 1.25)
+    office.press("Play again with both")
     office.says("as it was driven: ")
     office.says(r"beside it: .*antenna 1\.25 m forward")
     session = office.house.manager.session
@@ -159,42 +117,26 @@ def test_a_replay_is_played_again_beside_another_filter_and_without_it(office: O
     assert session is not first
     assert session.compare is not None
     office.until(lambda: session.snapshot().ghost is not None)
-    office.client.press("Play again without it")
+    office.press("Play again without it")
     office.until(lambda: office.house.manager.session is not session)
     office.until(lambda: "as it was driven" not in office.client.words())
 
 
-def test_without_any_recording_it_says_how_one_comes(tmp_path: Path) -> None:
-    manager = SessionManager()
-    house = House(manager, Store(tmp_path))
-    with running_viser() as server:
-        for empty in _opened(server, house):
-            empty.says("Every drive records itself")
-    house.close()
-    manager.close()
+def test_without_any_recording_it_says_how_one_comes(server: viser.ViserServer, tmp_path: Path) -> None:
+    with setup_place(server, tmp_path) as empty:
+        empty.says("Every drive records itself")
 
 
-def made_by(office: Office, label: str) -> Download:
-    """What the front would send for the link of this label."""
-    office.says(label)
-    address = re.findall(rf"/download/([\w-]+)\"[^>]*>{re.escape(label)}<", office.client.words())[-1]
-    make = office.house.files.maker(address)
-    assert make is not None
-    made = make()
-    assert made is not None
-    return made
+def report_differs(office: SetupPlace, other: Download) -> bool:
+    return office.made("Zip for a bug report").data != other.data
 
 
-def report_differs(office: Office, other: Download) -> bool:
-    return made_by(office, "Zip for a bug report").data != other.data
-
-
-def test_a_bug_report_is_made_here_and_elsewhere(office: Office, tmp_path: Path) -> None:
-    office.open_newest()
-    here = made_by(office, "Zip for a bug report")
-    office.client.set("Move it elsewhere on earth", value=True)
+def test_a_bug_report_is_made_here_and_elsewhere(office: SetupPlace, tmp_path: Path) -> None:
+    open_newest(office)
+    here = office.made("Zip for a bug report")
+    office.fill("Move it elsewhere on earth", value=True)
     office.until(lambda: report_differs(office, here))
-    there = made_by(office, "Zip for a bug report")
+    there = office.made("Zip for a bug report")
     drives = []
     for number, one in enumerate((here, there)):
         path = tmp_path / f"{number}.zip"
@@ -205,68 +147,57 @@ def test_a_bug_report_is_made_here_and_elsewhere(office: Office, tmp_path: Path)
     assert places[0][1] == places[1][1]
 
 
-def test_what_cannot_be_made_is_one_sentence(office: Office, data: Path) -> None:
-    office.open_newest()
+def test_what_cannot_be_made_is_one_sentence(office: SetupPlace, data: Path) -> None:
+    open_newest(office)
     office.says("NMEA: ")
     newest = next(one.path for one in list_recordings(data) if one.summary is not None)
     away = newest.rename(data / "away")
     try:
         with pytest.raises(NotMadeError, match="there is no recording"):
-            made_by(office, f"NMEA: {DRIVE_WRITERS['nmea'].words}")
+            office.made(f"NMEA: {DRIVE_WRITERS['nmea'].words}")
     finally:
         away.rename(newest)
 
 
-def test_a_recording_is_deleted_and_comes_back(office: Office, data: Path) -> None:
+def test_a_recording_is_deleted_and_comes_back(office: SetupPlace, data: Path) -> None:
     before = [one.path for one in list_recordings(data)]
-    office.open_newest()
-    office.client.press("Delete this recording")
+    open_newest(office)
+    office.press("Delete this recording")
     office.says("is deleted")
     assert len(list_recordings(data)) == len(before) - 1
-    office.client.press("Undo")
+    office.press("Undo")
     office.says("It is back")
     assert [one.path for one in list_recordings(data)] == before
 
 
-def taken(office: Office, name: str, content: bytes) -> None:
-    office.says("Take in a recording")
-    found = re.search(r'time logs becomes a recording.*?data-upload="([\w-]+)"', office.client.words(), re.DOTALL)
-    assert found is not None
-    take = office.house.files.taker(found[1])
-    assert take is not None
-    take(name, content)
-
-
-def test_a_recording_is_taken_in_once_and_shown(office: Office, data: Path, tmp_path: Path) -> None:
-    office.list_is_drawn()
+def test_a_recording_is_taken_in_once_and_shown(office: SetupPlace, data: Path, tmp_path: Path) -> None:
+    list_is_drawn(office)
     newest = next(one.path for one in list_recordings(data) if one.summary is not None)
     kept = newest.rename(data / "away")
     content = io.BytesIO()
     with zipfile.ZipFile(content, "w") as archive:
         for path in kept.iterdir():
             archive.write(path, f"{newest.name}/{path.name}")
-    taken(office, "drive.zip", content.getvalue())
+    office.send(TIME_LOGS, "drive.zip", content.getvalue())
     office.says("1 recording was taken in")
     assert newest.name in [one.path.name for one in list_recordings(data)]
-    taken(office, "drive.zip", content.getvalue())
-    office.told("in the list already")
+    office.send(TIME_LOGS, "drive.zip", content.getvalue())
+    office.says("in the list already")
     shutil.rmtree(newest)
     kept.rename(newest)
 
 
-def test_a_file_of_something_else_is_refused(office: Office) -> None:
-    taken(office, "holiday.zip", b"no zip")
-    office.told("is no recording")
+def test_a_file_of_something_else_is_refused(office: SetupPlace) -> None:
+    office.send(TIME_LOGS, "holiday.zip", b"no zip")
+    office.says("is no recording")
 
 
-def test_the_ledger_of_several_drives(office: Office) -> None:
-    office.says("Look at")
-    office.until(lambda: office.client.control("Ledger of several"))
-    office.client.press("Ledger of several")
-    office.until(lambda: office.client.control("Make the ledger"))
-    office.client.set("Field", "Sample field")
-    office.client.press("Any day")
-    office.client.press("Make the ledger")
+def test_the_ledger_of_several_drives(office: SetupPlace) -> None:
+    office.press("Ledger of several")
+    office.until(lambda: office.newest("Make the ledger"))
+    office.fill("Field", "Sample field")
+    office.press("Any day")
+    office.press("Make the ledger")
     office.says("2 drives")
-    assert made_by(office, "Ledger as PDF").data.startswith(b"%PDF")
-    assert made_by(office, "Ledger as CSV").data.count(b"\n") >= 3
+    assert office.made("Ledger as PDF").data.startswith(b"%PDF")
+    assert office.made("Ledger as CSV").data.count(b"\n") >= 3

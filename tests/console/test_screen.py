@@ -1,7 +1,6 @@
 """The screen without a browser: what every client is sent, what its fingers do, and what it costs."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +8,7 @@ import pytest
 import viser
 from support.sessions import HandSession
 from support.snapshots import SetSession, field_job, field_snapshot, strip, trail
-from support.stage import Stage, running_viser, visible
+from support.stage import Stage, visible
 from support.viser_client import ViserClient, viser_client
 
 from guidance_app.console.house import House
@@ -22,13 +21,6 @@ TICK_S = 0.04
 MOST_BYTES_A_TICK = 300
 MOST_BYTES_A_FIX = 6_000
 MOST_JOIN_BYTES = 120_000
-
-
-@pytest.fixture
-def server() -> Iterator[viser.ViserServer]:
-    """viser on a free port."""
-    with running_viser() as running:
-        yield running
 
 
 @pytest.fixture

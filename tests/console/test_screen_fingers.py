@@ -1,12 +1,10 @@
 """Every control of the panels is pressed: it posts its command, and follows what is without answering itself."""
 
-from collections.abc import Iterator
-
 import pytest
 import viser
 from support.drives import a_job, path_chunks, up_and_down
 from support.snapshots import SetSession, field_job, field_snapshot
-from support.stage import Stage, running_viser, visible
+from support.stage import Stage, visible
 from support.viser_client import ViserClient, viser_client
 
 from guidance_app.documents import Settings, Units
@@ -33,13 +31,6 @@ from guidance_app.model import (
 from guidance_app.runtime import ReplaySession
 from guidance_app.sources.file import FileLog
 from guidance_app.view.units import INCH
-
-
-@pytest.fixture
-def server() -> Iterator[viser.ViserServer]:
-    """viser on a free port."""
-    with running_viser() as running:
-        yield running
 
 
 @pytest.fixture

@@ -9,20 +9,12 @@ from pathlib import Path
 import pytest
 import viser
 from support.setup_place import SetupPlace, setup_place
-from support.stage import running_viser
 
 from guidance_app.console.backups import contents_of, in_trash
 from guidance_app.documents import Settings, Tractor, Units
 from guidance_app.language import ENGLISH, words_for
 from guidance_app.store import Store, StoreError, copy_sample, load_job
 from guidance_app.view.lamp_steps import PRESETS, steps_from_text, steps_text
-
-
-@pytest.fixture(scope="module")
-def server() -> Iterator[viser.ViserServer]:
-    """viser on a free port."""
-    with running_viser() as running:
-        yield running
 
 
 @pytest.fixture

@@ -11,7 +11,6 @@ import viser
 from support.drives import path_chunks, up_and_down
 from support.recordings import driven_live
 from support.setup_place import SetupPlace, setup_place
-from support.stage import running_viser
 
 from guidance_app.console.beginnings import beginnings_of
 from guidance_app.console.panels.start import cut_off_words
@@ -23,13 +22,6 @@ from guidance_app.store.recordings_list import Resumable, resumable
 
 EPOCHS = 120
 """At 10 Hz: longer than what is not worth going on with."""
-
-
-@pytest.fixture(scope="module")
-def server() -> Iterator[viser.ViserServer]:
-    """viser on a free port."""
-    with running_viser() as running:
-        yield running
 
 
 @pytest.fixture

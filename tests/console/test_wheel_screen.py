@@ -1,24 +1,14 @@
 """Two browsers on one drive: one operates, the other follows, asks, and has the wheel when the first one goes."""
 
-from collections.abc import Iterator
-
-import pytest
 import viser
 from support.drives import a_job, path_chunks, up_and_down
 from support.snapshots import SetSession, field_snapshot
-from support.stage import Stage, running_viser
+from support.stage import Stage
 from support.viser_client import viser_client
 
 from guidance_app.model import SkipPass
 from guidance_app.runtime import ReplaySession
 from guidance_app.sources.file import FileLog
-
-
-@pytest.fixture
-def server() -> Iterator[viser.ViserServer]:
-    """viser on a free port."""
-    with running_viser() as running:
-        yield running
 
 
 def test_one_operates_and_the_other_follows(server: viser.ViserServer) -> None:

@@ -1,6 +1,7 @@
-"""A console where things are set up, with one client that presses, types and reads."""
+"""A console with one client that presses, types, taps, sends files and reads; driving nothing unless asked."""
 
 import re
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -9,10 +10,12 @@ from typing import Any
 import pytest
 import viser
 
+from guidance_app.console.files import Download
 from guidance_app.console.house import House
 from guidance_app.console.screen import Screen
-from guidance_app.documents import Implement, Operation, Receiver, Tractor
+from guidance_app.documents import FieldDocument, Implement, Operation, Receiver, Tractor
 from guidance_app.runtime import SessionManager
+from guidance_app.sources.ports import ListPorts, found_ports
 from guidance_app.store import Store
 from support.viser_client import ViserClient, viser_client
 
@@ -23,21 +26,25 @@ SOON_S = 0.03
 
 
 class SetupPlace:
-    """One console and one client. Everything waits until it has happened."""
+    """One console and one client. Everything waits until it has happened; ``each_redraw`` is called before each."""
 
     def __init__(self, house: House, screen: Screen, client: ViserClient) -> None:
         self.house = house
         self.screen = screen
         self.client = client
+        self.each_redraw: Callable[[], None] = lambda: None
 
     @property
     def store(self) -> Store:
         assert self.house.store is not None
         return self.house.store
 
+    # --- what is seen ----------------------------------------------------------------------------------------------
+
     def until(self, true: Callable[[], Any]) -> None:
         """Redraws until it is so."""
         for _ in range(MOST_REDRAWS):
+            self.each_redraw()
             self.screen.tick()
             if self.client.soon(true, SOON_S):
                 return
@@ -47,8 +54,46 @@ class SetupPlace:
         """Every notification so far."""
         return "\n".join(str(one) for one in self.client.messages if one["type"].startswith("Notification"))
 
+    def says(self, pattern: str) -> None:
+        """Waits until the panels or a notification say this."""
+        self.until(lambda: re.search(pattern, self.client.words()) or re.search(pattern, self.told()))
+
+    def sees(self, *nodes: str) -> None:
+        """Waits until these are in the scene."""
+        self.until(lambda: all(one in self.client.nodes for one in nodes))
+
+    def sees_no(self, *nodes: str) -> None:
+        """Waits until none of these is in the scene."""
+        self.until(lambda: not any(one in self.client.nodes for one in nodes))
+
+    def newest(self, label: str) -> dict[str, Any] | None:
+        """The control in sight that came last of those with this label, or with this word among its buttons."""
+        for control in reversed(list(self.client.controls.values())):
+            props = control["props"]
+            options = [one.removeprefix("● ") for one in props.get("options", ())]
+            buttons = options if control["type"] == "GuiButtonGroupMessage" else []
+            if props.get("visible", True) and (props.get("label") == label or label in buttons):
+                return control
+        return None
+
+    def label(self, beginning: str) -> str:
+        """The first label that begins so, once there is one."""
+
+        def found() -> list[str]:
+            labels = [str(one["props"].get("label")) for one in self.client.controls.values()]
+            return [one for one in labels if one.startswith(beginning)]
+
+        self.until(found)
+        return found()[0]
+
+    def names(self, kind: type[Tractor | Implement | Receiver | FieldDocument | Operation]) -> list[str]:
+        """The names of what is stored."""
+        return [one.document.name for one in self.store.list(kind)]
+
+    # --- what is done ----------------------------------------------------------------------------------------------
+
     def press(self, words: str) -> None:
-        """Presses the button of these words once it is there."""
+        """Presses the button of these words once it is in sight."""
         self.until(lambda: self.newest(words))
         control = self.newest(words)
         assert control is not None
@@ -80,31 +125,46 @@ class SetupPlace:
     def _send(self, control: dict[str, Any], value: Any) -> None:
         self.client._say(type="GuiUpdateMessage", uuid=control["uuid"], updates={"value": value})
 
-    def newest(self, label: str) -> dict[str, Any] | None:
-        """The control that came last of those with this label, or with this word among its buttons."""
-        for control in reversed(list(self.client.controls.values())):
-            props = control["props"]
-            options = [one.removeprefix("● ") for one in props.get("options", ())]
-            buttons = options if control["type"] == "GuiButtonGroupMessage" else []
-            if props.get("visible", True) and (props.get("label") == label or label in buttons):
-                return control
-        return None
+    # --- files -----------------------------------------------------------------------------------------------------
 
-    def says(self, pattern: str) -> None:
-        """Waits until the panels or a notification say this."""
-        self.until(lambda: re.search(pattern, self.client.words()) or re.search(pattern, self.told()))
+    def token(self, after: str) -> str:
+        """Under which a file is awaited by the newest button behind these words."""
+        pattern = rf'{after}.*?data-upload="([^"]+)"'
+        self.until(lambda: re.search(pattern, self.client.words(), re.DOTALL))
+        return str(re.findall(pattern, self.client.words(), re.DOTALL)[-1])
 
-    def names(self, kind: type[Tractor | Implement | Receiver | Operation]) -> list[str]:
-        """The names of what is stored."""
-        return [one.document.name for one in self.store.list(kind)]
+    def send(self, after: str, name: str, content: bytes) -> None:
+        """What the front does with a file that was chosen there, on a thread of its own."""
+        take = self.house.files.taker(self.token(after))
+        assert take is not None
+        sending = threading.Thread(target=take, args=(name, content), name="front")
+        sending.start()
+        sending.join()
+
+    def made(self, label: str) -> Download:
+        """What the front sends for the newest link of this label."""
+        pattern = rf'/download/([\w.-]+)"[^>]*>{re.escape(label)}<'
+        self.until(lambda: re.search(pattern, self.client.words()))
+        make = self.house.files.maker(re.findall(pattern, self.client.words())[-1])
+        assert make is not None
+        made = make()
+        assert made is not None
+        return made
 
 
 @contextmanager
-def setup_place(server: viser.ViserServer, folder: Path) -> Iterator[SetupPlace]:
-    """A console on this data folder that drives nothing."""
-    manager = SessionManager()
-    manager.start()
-    house = House(manager, Store(folder))
+def setup_place(
+    server: viser.ViserServer,
+    folder: Path | None,
+    session: Any = None,
+    *,
+    list_ports: ListPorts = found_ports,
+) -> Iterator[SetupPlace]:
+    """A console on this data folder, None for none, that drives nothing unless a session is given."""
+    manager = SessionManager(session)
+    if session is None:
+        manager.start()
+    house = House(manager, None if folder is None else Store(folder), list_ports)
     screen = Screen(server, house)
     screen.attach()
     try:

@@ -12,7 +12,7 @@ from guidance_app.console.screen import Screen
 from guidance_app.runtime import SessionManager
 from support.viser_client import ViserClient, viser_client
 
-__all__ = ["Stage", "running_viser", "visible"]
+__all__ = ["Stage", "running_viser", "server", "visible"]
 
 MOST_REDRAWS = 2000
 SOON_S = 0.05
@@ -60,6 +60,13 @@ def running_viser() -> Iterator[viser.ViserServer]:
         yield server
     finally:
         server.stop()
+
+
+@pytest.fixture
+def server() -> Iterator[viser.ViserServer]:
+    """viser on a free port, for one test: nothing of another test is in its scene."""
+    with running_viser() as running:
+        yield running
 
 
 def visible(client: ViserClient, name: str) -> bool:

@@ -6,6 +6,7 @@ as it is: a plan taken here begins with the next drive.
 
 import threading
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import viser
@@ -27,6 +28,16 @@ from guidance_app.view.plan_table import PlanRow, plan_rows
 __all__ = ["Plan"]
 
 
+@dataclass(slots=True)
+class _Search:
+    """One comparison: the worker adds rows until all are there or ``stop`` is set; the redraw shows them."""
+
+    stored: Stored[Operation]
+    rows: tuple[PreviewRow, ...] = ()
+    running: bool = True
+    stop: threading.Event = field(default_factory=threading.Event)
+
+
 class Plan:
     """Compares the plans of one registered operation."""
 
@@ -35,13 +46,14 @@ class Plan:
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
         self._hands = hands
         self._words = words = hands.words
-        self._operations: dict[str, Stored[Operation]] = {}
+        self._operations: dict[str, Stored[Operation]] | None = None
+        """As they were found by the last look; None before the first."""
         self._version = -1
-        self._stored: Stored[Operation] | None = None
-        self._rows: tuple[PreviewRow, ...] = ()
+        self._search: _Search | None = None
         self._chosen: int | None = None
-        self._stop = threading.Event()
-        self._running = False
+        self._segments: Sequence[Segment] = ()
+        """Of the plan that is to be seen on the map."""
+        self._drawn: object = None
         self._nothing = Shown(gui)
         self._which: Any = gui.add_dropdown(words("Operation"), ("-",), visible=False)
         self._button = gui.add_button(words("Compare plans"), color="green", visible=False)
@@ -61,55 +73,51 @@ class Plan:
             self._take_chosen()
 
         @self._which.on_update
-        async def _(_: object) -> None:
-            self._forget()
+        async def _(event: viser.GuiEvent[Any]) -> None:
+            if event.client_id is not None:  # not when the list changes under the finger
+                self._forget()
 
     def _look(self) -> None:
         """The operations as they are stored now; on a thread of its own."""
         store = self._hands.house.store
         found = () if store is None else store.list(Operation)
         self._operations = {f"{each.document.field}: {each.document.name}": each for each in found}
-        names = tuple(self._operations) or ("-",)
-        if tuple(self._which.options) != names:
-            self._which.options = names
-        self._which.visible = self._button.visible = bool(found)
-        nothing = self._words("No operation is registered yet: register a field, machines and an operation first.")
-        self._nothing.show("" if found else notice_html([nothing]))
+        self._hands.soon()
 
     # --- comparing -------------------------------------------------------------------------------------------------
 
     def _begin_or_stop(self) -> None:
-        if self._running:
-            self._stop.set()
+        if self._search is not None and self._search.running:
+            self._search.stop.set()
             return
         self._forget()
-        self._stored = self._operations[self._which.value]
-        self._running = True
-        stop, stored = self._stop, self._stored
-        self._hands.later(lambda: self._compare(stored, stop))
+        stored = (self._operations or {}).get(self._which.value)
+        if stored is None:
+            return  # taken away by another console a moment ago: the list is about to say so
+        self._search = search = _Search(stored)
+        self._hands.later(lambda: self._compare(search))
 
     def _forget(self) -> None:
         """Another operation, or the same once more: the old search ends and its rows go."""
-        self._stop.set()
-        self._stop = threading.Event()
-        self._running = False
-        self._rows, self._chosen, self._stored = (), None, None
-        draw_plan(self._hands.sketch, ())
+        if self._search is not None:
+            self._search.stop.set()
+        self._search, self._chosen, self._segments = None, None, ()
+        self._hands.soon()
 
-    def _compare(self, stored: Stored[Operation], stop: threading.Event) -> None:
+    def _compare(self, search: "_Search") -> None:
         """Plans row by row until all are there or somebody stops it."""
         try:
-            job = self._job(stored)
+            job = self._job(search.stored)
             assert job.field is not None
             self._hands.house.show_field(job.field)
             polygon = polygon_in(frame_of(job.field.boundary), job.field.boundary)
             for row in preview(polygon, request_of(job)):
-                if stop.is_set():
+                if search.stop.is_set():
                     return
-                self._rows = (*self._rows, row)
+                search.rows = (*search.rows, row)
         finally:
-            if stop is self._stop:
-                self._running = False
+            search.running = False
+            self._hands.soon()
 
     def _job(self, stored: Stored[Operation]) -> Job:
         store = self._hands.house.store
@@ -120,31 +128,27 @@ class Plan:
 
     def _pressed(self, number: int) -> None:
         """The first press on a row shows its plan, the second takes it."""
-        row = next((each for each in self._rows if each.number == number), None)
+        row = next((each for each in self._rows() if each.number == number), None)
         if row is None or row.plan is None:
             return
         if number == self._chosen:
             self._take_chosen()
             return
         self._chosen = number
-        segments = row.plan.segments
+        self._segments = row.plan.segments
         self._hands.look(ViewMode.WHOLE_FIELD)
-        self._hands.later(lambda: self._draw(segments))
-
-    def _draw(self, segments: Sequence[Segment]) -> None:
-        draw_plan(self._hands.sketch, segments)
+        self._hands.soon()
 
     def _take_chosen(self) -> None:
-        row = next((each for each in self._rows if each.number == self._chosen), None)
-        stored = self._stored
-        if row is not None and stored is not None:
-            self._hands.later(lambda: self._store(row, stored))
+        row, search = next((each for each in self._rows() if each.number == self._chosen), None), self._search
+        if row is not None and search is not None:
+            self._hands.later(lambda: self._store(row, search))
 
-    def _store(self, row: PreviewRow, stored: Stored[Operation]) -> None:
+    def _store(self, row: PreviewRow, search: "_Search") -> None:
         """Into the operation, as it was when the comparison began; a change by somebody else is not overwritten."""
         store = self._hands.house.store
         assert store is not None, "an operation comes from a store"
-        request = row.request
+        request, stored = row.request, search.stored
         changed = {
             "method": request.method,
             "direction": request.direction,
@@ -154,8 +158,8 @@ class Plan:
         document = stored.document.model_copy(update=changed)
         store.save(document, stored.revision)
         again = store.load(Operation, document.name, document.field)
-        self._operations[f"{document.field}: {document.name}"] = again
-        self._stored = again
+        self._operations = {**(self._operations or {}), f"{document.field}: {document.name}": again}
+        search.stored = again
         self._hands.tell(
             self._words("Plan taken"),
             self._words("{operation} is driven like this from its next start on.", operation=document.name),
@@ -169,10 +173,13 @@ class Plan:
         if version != self._version:
             self._version = version
             self._hands.house.aside(self._look)
-        words, rows = self._words, self._rows
-        self._button.label = words("Stop") if self._running else words("Compare plans")
-        self._button.color = "red" if self._running else "green"
-        self._progress.visible = self._running
+        self._offer()
+        self._draw()
+        words, rows = self._words, self._rows()
+        running = self._search is not None and self._search.running
+        self._button.label = words("Stop") if running else words("Compare plans")
+        self._button.color = "red" if running else "green"
+        self._progress.visible = running
         if rows:
             self._progress.value = 100.0 * len(rows) / rows[0].count
         self._take.visible = self._chosen is not None
@@ -180,14 +187,36 @@ class Plan:
         self._table.show(table_html(shown, self._chosen, self._buttons.named, words))
         if rows:
             self._unseen.show(self._buttons.style)
-        self._said.show(notice_html(self._hints(shown)))
+        self._said.show(notice_html(self._hints(shown, len(rows) and rows[0].count)))
 
-    def _hints(self, shown: Sequence[PlanRow]) -> list[str]:
+    def _offer(self) -> None:
+        """The operations that were found; a sentence where there is none."""
+        found = self._operations
+        if found is None:
+            return
+        names = tuple(found) or ("-",)
+        if tuple(self._which.options) != names:
+            self._which.options = names
+        self._which.visible = self._button.visible = bool(found)
+        nothing = self._words("No operation is registered yet: register a field, machines and an operation first.")
+        self._nothing.show("" if found else notice_html([nothing]))
+
+    def _draw(self) -> None:
+        """The plan of the pressed row, again when the map was made anew."""
+        key = (self._segments, self._hands.sketch.scene_number) if self._segments else None
+        if key != self._drawn:
+            self._drawn = key
+            draw_plan(self._hands.sketch, self._segments)
+
+    def _rows(self) -> tuple[PreviewRow, ...]:
+        return () if self._search is None else self._search.rows
+
+    def _hints(self, shown: Sequence[PlanRow], count: int) -> list[str]:
         """How many plans there are, which is the best so far, and what a press does."""
         best = next((row for row in shown if row.best), None)
         if best is None:
             return []
-        words, count = self._words, self._rows[0].count
+        words = self._words
         return [
             words(
                 "{made} of {count} plans. Best so far: {title}, {where}.",

@@ -36,7 +36,8 @@ class Receiver:
     def __init__(self, gui: viser.GuiApi, hands: Hands) -> None:
         self._hands = hands
         self._words = words = hands.words
-        self._paths: dict[str, str] = {}
+        self._paths: dict[str, str] | None = None
+        """Addresses by what a person reads; None until the ports are listed. The worker leaves them."""
         self._raw_wanted = False
         self._asked: str | None = None
         self._round = 0
@@ -71,8 +72,9 @@ class Receiver:
 
         @self._ports.on_update
         async def _(event: viser.GuiEvent[viser.GuiDropdownHandle[str]]) -> None:
-            if event.client_id is not None and self._ports.value in self._paths:
-                self._address.value = self._paths[self._ports.value]
+            address = (self._paths or {}).get(self._ports.value)
+            if event.client_id is not None and address is not None:
+                self._address.value = address
 
         @self._use.on_click
         async def _(_: object) -> None:
@@ -84,14 +86,21 @@ class Receiver:
 
     def _find(self) -> None:
         """Lists the ports of this machine; takes a moment on some systems."""
-        words = self._words
         found = self._hands.house.list_ports()
         self._paths = {
             f"{port.path} · {port.name}" if port.name else port.path: f"serial://{quote(port.path)}" for port in found
         }
+        self._hands.soon()
+
+    def _offer(self) -> None:
+        """The ports that were found; a choice among the same ones stays."""
+        words, found = self._words, self._paths
+        if found is None:
+            return
         nothing = (words("no port found: plug the receiver in"),)
-        choose = (words("choose one of {n}", n=len(found)), *self._paths)
-        self._ports.options = choose if found else nothing
+        options = (words("choose one of {n}", n=len(found)), *found) if found else nothing
+        if tuple(self._ports.options) != options:
+            self._ports.options = options
 
     def _pressed(self) -> None:
         """Takes the address; while something is driven the first press asks, because the drive begins anew."""
@@ -106,6 +115,7 @@ class Receiver:
     def show(self, desk: Desk) -> None:
         """Brings everything up to now, once a second."""
         self._ask()
+        self._offer()
         self._round += 1
         if self._round % WORDS_EVERY != 1:
             return

@@ -41,7 +41,6 @@ class Recordings:
         self._pages.show(desk)
 
     def _go_to(self, page: int, said: tuple[str, ...] = ()) -> None:
-        self._hands.sketch.clear()
         undo = None if self._removed is None else self._undo
         ways = ListWays(self._look, self._go_to, self._ledger, self._take, undo)
         self._pages.turn(lambda gui: RecordingList(gui, self._hands, page, ways, said))

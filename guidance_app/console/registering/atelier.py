@@ -2,9 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol, assert_never
-
-import viser
+from typing import assert_never
 
 from guidance_app.boundary import CheckedField
 from guidance_app.console.desk import Hands
@@ -14,14 +12,13 @@ from guidance_app.geodesy import FieldFrame
 from guidance_app.language import Words
 from guidance_app.view.units import ACRE, ARE, HECTARE, TAN
 
-__all__ = ["Atelier", "Way", "area_words"]
+__all__ = ["Atelier", "area_words"]
 
 
 @dataclass(frozen=True, slots=True)
 class Atelier:
     """Given to each way: ``offer`` shows what was made in the preview, ``cancel`` goes back to the list."""
 
-    gui: viser.GuiApi
     hands: Hands
     offer: Callable[[tuple[CheckedField, ...], str], None]
     cancel: Callable[[], None]
@@ -42,18 +39,6 @@ class Atelier:
             number += 1
             name = f"{wanted} {number}"
         return name
-
-
-class Way(Protocol):
-    """One way to a field, at work inside a card."""
-
-    def show(self) -> None:
-        """Brings what is shown up to now; called a few times a second."""
-        ...
-
-    def close(self) -> None:
-        """Stops listening; what was made is forgotten."""
-        ...
 
 
 def area_words(square_metres: float, units: Units, words: Words) -> str:

@@ -2,7 +2,10 @@
 
 import threading
 
+import viser
+
 from guidance_app.boundary import BoundaryError, FieldDraft, checked_field
+from guidance_app.console.desk import Desk
 from guidance_app.console.registering.atelier import Atelier
 from guidance_app.console.registering.by_tapping import draft_ring
 from guidance_app.console.widgets import Shown, buttons, notice_html, rows_html
@@ -36,14 +39,13 @@ GATES = {
 class Driving:
     """Listens to the drive and draws its boundary."""
 
-    def __init__(self, atelier: Atelier) -> None:
+    def __init__(self, gui: viser.GuiApi, atelier: Atelier) -> None:
         self._atelier = atelier
         self._hands = atelier.hands
         self._words = words = atelier.hands.words
         self._drive: BoundaryDrive | None = None
         self._lock = threading.Lock()
-        self._drawn = -1
-        gui = atelier.gui
+        self._drawn: object = None
         self._notice = Shown(gui)
         self._edge = gui.add_dropdown(words("Boundary is at"), tuple(words(name) for name in EDGES.values()))
         self._gate = gui.add_dropdown(words("Take"), tuple(words(name) for name in GATES.values()))
@@ -73,9 +75,7 @@ class Driving:
         width = self._hands.house.manager.job.implement.working_width
         with self._lock:
             self._drive = BoundaryDrive(edge, gate, width)
-        self._edge.disabled = self._gate.disabled = True
-        self._start.visible = False
-        self._pause.visible = True
+        self._hands.soon()
 
     def _toggle_pause(self) -> None:
         with self._lock:
@@ -111,9 +111,8 @@ class Driving:
         draft = FieldDraft(name, (([*ring, ring[0]],),), remarks=remarks)
         self._atelier.offer((checked_field(draft, name),), self._words("driven"))
 
-    def show(self) -> None:
+    def show(self, desk: Desk) -> None:
         """Brings line and numbers up to what was driven."""
-        desk = self._hands.desk()
         if desk.snapshot.pose is None:
             words = self._words("The receiver gives no position: start a drive under Start, then come back here.")
             self._notice.show(notice_html([words]))
@@ -126,8 +125,12 @@ class Driving:
                 return
             points, length, area, gap = drive.points, drive.length, drive.area, drive.gap
             refused, paused = dict(drive.refused), drive.paused
-        if len(points) != self._drawn:
-            self._drawn = len(points)
+        self._edge.disabled = self._gate.disabled = True
+        self._start.visible = False
+        self._pause.visible = True
+        key = (self._hands.sketch.scene_number, len(points))
+        if key != self._drawn:
+            self._drawn = key
             self._hands.sketch.line(DRIVEN, points)
             self._hands.sketch.line(CLOSING, points[[-1, 0]] if len(points) > 2 else ())
         rows = [

@@ -2,7 +2,10 @@
 
 from typing import Any
 
+import viser
+
 from guidance_app.boundary import BoundaryError
+from guidance_app.console.desk import Desk
 from guidance_app.console.files import upload_html
 from guidance_app.console.photo import Photo, PhotoError, opened_photo
 from guidance_app.console.registering.atelier import Atelier
@@ -23,14 +26,17 @@ GREEN = (47, 158, 68)
 class OnPhoto:
     """Lays a photo and matches it: a tap on the photo, then where that is."""
 
-    def __init__(self, atelier: Atelier) -> None:
+    def __init__(self, gui: viser.GuiApi, atelier: Atelier) -> None:
         self._atelier = atelier
         self._hands = atelier.hands
         self._words = words = atelier.hands.words
         self._layer = atelier.layer
         self._spot: tuple[float, float] | None = None
         self._drawn: object = None
-        gui = atelier.gui
+        self._named = self._layer.photo
+        """The photo whose name stands in the entry."""
+        self._typed = self._typed_shown = 0
+        """How many typed places were taken, and of how many the entry was emptied."""
         self._token = self._hands.house.files.awaits(self._take)
         self._maps = self._stored()
         if self._maps:
@@ -84,7 +90,7 @@ class OnPhoto:
     def _lay(self, photo: Photo, points: tuple[MatchedPoint, ...]) -> None:
         self._spot = None
         self._layer.lay(photo, points)
-        self._name.value = photo.name
+        self._hands.soon()
 
     def _chosen(self) -> StoredMap:
         return next(one for one in self._maps if one.document.name == self._which.value)
@@ -104,6 +110,7 @@ class OnPhoto:
     def _take_away(self) -> None:
         self._spot = None
         self._layer.lay(None)
+        self._hands.soon()
 
     def _keep(self) -> None:
         store, photo = self._hands.house.store, self._layer.photo
@@ -129,6 +136,7 @@ class OnPhoto:
         if fit is not None:
             pixel = fit.pixels([(east, north)])[0]
             self._spot = float(pixel[0]), float(pixel[1])
+            self._hands.soon()
 
     def _match_typed(self) -> None:
         try:
@@ -136,24 +144,24 @@ class OnPhoto:
         except CornerError as error:
             raise BoundaryError(str(error)) from error
         self._add(corner.latitude_deg, corner.longitude_deg)
-        self._place.value = ""
+        self._typed += 1
+        self._spot = None
 
     def _match_here(self) -> None:
         snapshot = self._hands.desk().snapshot
         if snapshot.pose is None or snapshot.origin_deg is None:
             raise BoundaryError(self._words("The receiver gives no position: start one under Start."))
         self._add(*FieldFrame(*snapshot.origin_deg).degrees_from_east_north(snapshot.pose.east, snapshot.pose.north))
+        self._spot = None
 
     def _add(self, latitude: float, longitude: float) -> None:
+        """One more point. Raises ``BoundaryError``, and everything stays as it is, when it fits with no other."""
         if self._spot is None:
             raise BoundaryError(self._words("Tap the spot on the photo first."))
         point = MatchedPoint(right=self._spot[0], down=self._spot[1], longitude_deg=longitude, latitude_deg=latitude)
-        self._layer.points.append(point)
-        self._spot = None
         try:
-            self._layer.fit(self._frame())
+            self._layer.match(point, self._frame())
         except FitError as error:
-            self._layer.points.pop()
             raise BoundaryError(str(error)) from error
 
     def _undo(self) -> None:
@@ -164,9 +172,11 @@ class OnPhoto:
 
     # --- what is shown ---------------------------------------------------------------------------------------------
 
-    def show(self) -> None:
-        """Brings words, spot and residuals up to the matching."""
+    def show(self, desk: Desk) -> None:
+        """Brings words, entries, spot and residuals up to the matching."""
+        del desk
         frame, layer, words = self._frame(), self._layer, self._words
+        self._show_entries()
         if layer.photo is None:
             self._notice.show(
                 notice_html([words("Lay a photo or a scanned map on the ground, then draw fields over it.")])
@@ -176,15 +186,27 @@ class OnPhoto:
             self._notice.show(notice_html([said]))
         else:
             self._notice.show(notice_html([words("The photo lies. More spots make it better; then tap a new field.")]))
-        key = (frame, tuple(layer.points), self._spot, id(layer.photo))
+        spot, points = self._spot, list(layer.points)
+        key = (frame, tuple(points), spot, id(layer.photo), self._hands.sketch.scene_number)
         if key == self._drawn:
             return
         self._drawn = key
         fit = layer.placed(frame)
-        self._hands.sketch.corners(SPOT, [] if fit is None or self._spot is None else fit.ground([self._spot]))
-        spots = [(one.right, one.down) for one in layer.points]
+        self._hands.sketch.corners(SPOT, [] if fit is None or spot is None else fit.ground([spot]))
+        spots = [(one.right, one.down) for one in points]
         self._hands.sketch.corners(MATCHED, [] if fit is None or not spots else fit.ground(spots), GREEN)
-        self._rows.show(rows_html(_rows(layer.points, fit, self._words)))
+        self._rows.show(rows_html(_rows(points, fit, self._words)))
+
+    def _show_entries(self) -> None:
+        """A new photo brings its name along; a typed place that was taken is typed no more."""
+        photo, typed = self._layer.photo, self._typed
+        if photo is not self._named:
+            self._named = photo
+            if photo is not None:
+                self._name.value = photo.name
+        if typed != self._typed_shown:
+            self._typed_shown = typed
+            self._place.value = ""
 
     def close(self) -> None:
         """Awaits no photo any longer; the photo stays on the map."""

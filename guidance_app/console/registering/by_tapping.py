@@ -1,8 +1,10 @@
 """A field by tapping its corners on the map, or by standing on each of them."""
 
 import numpy as np
+import viser
 
 from guidance_app.boundary import BoundaryError, FieldDraft, checked_field
+from guidance_app.console.desk import Desk
 from guidance_app.console.registering.atelier import Atelier
 from guidance_app.console.widgets import Shown, buttons, notice_html
 from guidance_app.geodesy import FieldFrame
@@ -17,13 +19,13 @@ FEWEST = 3
 class Tapping:
     """Collects corners: each tap on the ground is one, and each press while standing on one."""
 
-    def __init__(self, atelier: Atelier) -> None:
+    def __init__(self, gui: viser.GuiApi, atelier: Atelier) -> None:
         self._atelier = atelier
         self._hands = atelier.hands
         self._words = atelier.hands.words
         self._points: list[tuple[float, float]] = []
+        self._drawn: object = None
         self._frame = atelier.frame()
-        gui = atelier.gui
         self._notice = Shown(gui)
         self._count = Shown(gui)
         self._here = gui.add_button(self._words("Corner where I stand"), color="green")
@@ -43,7 +45,7 @@ class Tapping:
 
     def _tap(self, east: float, north: float) -> None:
         self._points.append((east, north))
-        self._draw()
+        self._hands.soon()
 
     def _stand(self) -> None:
         pose = self._hands.desk().snapshot.pose
@@ -61,13 +63,12 @@ class Tapping:
     def _undo(self) -> None:
         if self._points:
             self._points.pop()
-        self._draw()
+        self._hands.soon()
 
-    def _draw(self) -> None:
+    def _draw(self, points: tuple[tuple[float, float], ...]) -> None:
         sketch = self._hands.sketch
-        sketch.corners(CORNERS, self._points)
-        ring = [*self._points, self._points[0]] if len(self._points) > 2 else self._points
-        sketch.line(EDGES, ring)
+        sketch.corners(CORNERS, points)
+        sketch.line(EDGES, [*points, points[0]] if len(points) > 2 else points)
 
     def _finish(self) -> None:
         if self._frame is None or len(self._points) < FEWEST:
@@ -77,8 +78,13 @@ class Tapping:
         checked = checked_field(FieldDraft(name, (([*ring, ring[0]],),)), name)
         self._atelier.offer((checked,), self._words("tapped on the map"))
 
-    def show(self) -> None:
-        """Brings the count up to the corners."""
+    def show(self, desk: Desk) -> None:
+        """Brings sketch and count up to the corners."""
+        points = tuple(self._points)
+        key = (self._hands.sketch.scene_number, points)
+        if key != self._drawn:
+            self._drawn = key
+            self._draw(points)
         if self._frame is None and self._atelier.frame() is None:
             words = self._words("The map has no place on earth yet: show a field first, or start the receiver.")
             self._notice.show(notice_html([words]))
@@ -87,16 +93,10 @@ class Tapping:
                 self._frame = self._atelier.frame()
                 self._hands.sketch.hear_taps(self._tap)
             self._notice.show(notice_html([self._words("Tap each corner in turn on the ground.")]))
-        here = self._hands.desk().snapshot.pose is not None
-        self._here.visible = here
-        area = _area(self._points)
-        told = self._words(
-            "{count} corners, {area}",
-            count=len(self._points),
-            area=area_text(area, self._hands.desk().units, self._words),
-        )
-        self._count.show(notice_html([told]))
-        self._done.disabled = len(self._points) < FEWEST
+        self._here.visible = desk.snapshot.pose is not None
+        area = area_text(_area(points), desk.units, self._words)
+        self._count.show(notice_html([self._words("{count} corners, {area}", count=len(points), area=area)]))
+        self._done.disabled = len(points) < FEWEST
 
     def close(self) -> None:
         """Stops listening to taps and takes the sketch away."""
@@ -109,7 +109,7 @@ def draft_ring(frame: FieldFrame, points: list[tuple[float, float]]) -> list[tup
     return [(float(lon), float(lat)) for lon, lat in lonlat]
 
 
-def _area(points: list[tuple[float, float]]) -> float:
+def _area(points: tuple[tuple[float, float], ...]) -> float:
     """By the shoelace formula, in square metres."""
     if len(points) < FEWEST:
         return 0.0

@@ -1,6 +1,9 @@
 """A field by typing its corners, in any of the systems of the receiver's menu (Inoue et al.)."""
 
+import viser
+
 from guidance_app.boundary import BoundaryError, FieldDraft, checked_field
+from guidance_app.console.desk import Desk
 from guidance_app.console.registering.atelier import Atelier
 from guidance_app.console.registering.choosing import SystemChoice
 from guidance_app.console.widgets import Shown, buttons, notice_html, rows_html
@@ -21,29 +24,29 @@ EXAMPLES = {
 class Typing:
     """Reads one corner a line."""
 
-    def __init__(self, atelier: Atelier) -> None:
+    def __init__(self, gui: viser.GuiApi, atelier: Atelier) -> None:
         self._atelier = atelier
         self._hands = atelier.hands
         self._words = words = atelier.hands.words
-        gui = atelier.gui
-        self._choice = SystemChoice(atelier)
+        self._said = ""
+        """How the lines were read, or why they were not; the worker leaves it, the redraw shows it."""
+        self._choice = SystemChoice(gui, atelier)
         self._help = Shown(gui)
         self._text = gui.add_text(words("One corner a line"), "", multiline=True)
         self._read = Shown(gui)
-        buttons(gui, "", ((words("Check"), self._check), (words("Cancel"), atelier.cancel)))
+        buttons(gui, "", ((words("Check"), self._pressed), (words("Cancel"), atelier.cancel)))
         done = gui.add_button(words("Preview"), color="green")
 
         @done.on_click
         async def _(_: object) -> None:
             self._hands.later(self._finish)
 
-        self._choice.on_change(self._explain)
-        self._explain()
+    def _pressed(self) -> None:
+        self._hands.later(self._check)
 
-    def _explain(self) -> None:
-        example = self._words("For example: {corner}", corner=EXAMPLES[self._choice.projection])
-        count = self._words("At least {count} corners, in turn around the field.", count=FEWEST)
-        self._help.show(notice_html([f"{count} {example}"]))
+    def _say(self, said: str) -> None:
+        self._said = said
+        self._hands.soon()
 
     def _corners(self) -> list[tuple[tuple[float, float], str]]:
         """Longitude, latitude of each line, and how it was read. Raises ``BoundaryError`` that names the line."""
@@ -70,9 +73,9 @@ class Typing:
         try:
             corners = self._corners()
         except BoundaryError as error:
-            self._read.show(notice_html([self._words.say(str(error))]))
+            self._say(notice_html([self._words.say(str(error))]))
             return
-        self._read.show(rows_html((str(number), said) for number, (_, said) in enumerate(corners, start=1)))
+        self._say(rows_html((str(number), said) for number, (_, said) in enumerate(corners, start=1)))
 
     def _finish(self) -> None:
         try:
@@ -81,12 +84,15 @@ class Typing:
             closed = ring if ring[0] == ring[-1] else [*ring, ring[0]]
             checked = checked_field(FieldDraft(name, ((closed,),)), name)
         except BoundaryError as error:
-            self._read.show(notice_html([self._words.say(str(error))]))
+            self._say(notice_html([self._words.say(str(error))]))
             return
         self._atelier.offer((checked,), self._words("typed"))
 
-    def show(self) -> None:
-        """Nothing here changes by itself."""
-
-    def close(self) -> None:
-        """Nothing is listened to."""
+    def show(self, desk: Desk) -> None:
+        """Brings help and what was read up to the choice and the check."""
+        del desk
+        self._choice.show()
+        example = self._words("For example: {corner}", corner=EXAMPLES[self._choice.projection])
+        count = self._words("At least {count} corners, in turn around the field.", count=FEWEST)
+        self._help.show(notice_html([f"{count} {example}"]))
+        self._read.show(self._said)

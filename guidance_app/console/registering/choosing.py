@@ -1,7 +1,8 @@
 """The choice of a coordinate system, as in the menu of Inoue et al.: coordinates, zone, datum, order."""
 
 import re
-from collections.abc import Callable
+
+import viser
 
 from guidance_app.boundary import BoundaryError
 from guidance_app.console.registering.atelier import Atelier
@@ -27,9 +28,9 @@ ORDERS: dict[str, Order | None] = {
 class SystemChoice:
     """The widgets of the choice; begins with what the receiver in use says."""
 
-    def __init__(self, atelier: Atelier) -> None:
+    def __init__(self, gui: viser.GuiApi, atelier: Atelier) -> None:
         self._words = words = atelier.hands.words
-        gui, receiver = atelier.gui, atelier.hands.house.manager.job.receiver
+        receiver = atelier.hands.house.manager.job.receiver
         systems = tuple(words(name) for name in SYSTEMS)
         begin = [one.value for one in SYSTEMS.values()].index(receiver.projection)
         self._system = gui.add_dropdown(words("Coordinates"), systems, initial_value=systems[begin])
@@ -37,19 +38,22 @@ class SystemChoice:
         begin = [one.value for one in DATUMS.values()].index(receiver.datum)
         self._datum = gui.add_dropdown(words("Datum"), datums, initial_value=datums[begin])
         hint = words("UTM: 32 or 32S. Plane rectangular: 1 to 19.")
-        self._zone = gui.add_text(words("Zone"), "", hint=hint, visible=self.projection is not Projection.GEOGRAPHIC)
+        self._zone = gui.add_text(words("Zone"), "", hint=hint)
         self._order = gui.add_dropdown(words("Order"), tuple(words(name) for name in ORDERS))
         self._inexact = gui.add_checkbox(
             words("Take it although it may be off by 9 m"), initial_value=False, visible=False
         )
-
-    def on_change(self, heard: Callable[[], None]) -> None:
-        """Calls ``heard`` when another system is chosen."""
+        self._asks_for_consent = False
+        self.show()
 
         @self._system.on_update
         async def _(_: object) -> None:
-            self._zone.visible = self.projection is not Projection.GEOGRAPHIC
-            heard()
+            atelier.hands.soon()
+
+    def show(self) -> None:
+        """Only what the chosen system needs is in sight."""
+        self._zone.visible = self.projection is not Projection.GEOGRAPHIC
+        self._inexact.visible = self._asks_for_consent
 
     @property
     def projection(self) -> Projection:
@@ -67,8 +71,8 @@ class SystemChoice:
         return bool(self._inexact.value)
 
     def ask_for_consent(self) -> None:
-        """Shows the box that accepts an inexact datum."""
-        self._inexact.visible = True
+        """Brings up the box that accepts an inexact datum, at the next redraw; from any thread."""
+        self._asks_for_consent = True
 
     def system(self) -> CoordinateSystem:
         """The chosen system. Raises ``BoundaryError`` for a zone that does not exist."""

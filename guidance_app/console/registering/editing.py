@@ -4,11 +4,12 @@ Each change is one tap or two, is stored at once and can be taken back; nothing 
 """
 
 import datetime
-from collections.abc import Callable
 
 import shapely
+import viser
 
 from guidance_app.boundary import BoundaryError, frame_of
+from guidance_app.console.desk import Desk
 from guidance_app.console.registering.atelier import Atelier, area_words
 from guidance_app.console.widgets import Shown, buttons, notice_html, rows_html
 from guidance_app.documents import FieldDocument
@@ -52,21 +53,19 @@ HELP = {
 
 
 class Editing:
-    """Works on one stored field. ``changed`` is called after each change that was stored."""
+    """Works on one stored field, at the revision that was read."""
 
-    def __init__(self, atelier: Atelier, document: FieldDocument, revision: str, changed: Callable[[], None]) -> None:
+    def __init__(self, gui: viser.GuiApi, atelier: Atelier, document: FieldDocument, revision: str) -> None:
         self._atelier = atelier
         self._hands = atelier.hands
         self._words = words = atelier.hands.words
         self._document = document
         self._revision = revision
-        self._changed = changed
         self._history: list[FieldDocument] = []
         self._mode = MOVE
         self._chosen: Corner | None = None
         self._taps: list[tuple[float, float]] = []
         self._drawn: object = None
-        gui = atelier.gui
         self._modes = gui.add_dropdown(words("Change"), tuple(words(mode) for mode in MODES))
         self._help = Shown(gui)
         self._rows = Shown(gui)
@@ -95,7 +94,6 @@ class Editing:
             self._hands.later(self._shift_here)
 
         self._hands.sketch.hear_taps(self._tap)
-        self._tell()
 
     # --- what is on the map ----------------------------------------------------------------------------------------
 
@@ -106,33 +104,28 @@ class Editing:
     def _change_mode(self) -> None:
         self._mode = MODES[self._modes.options.index(self._modes.value)]
         self._chosen, self._taps = None, []
-        self._tell()
+        self._hands.soon()
 
-    def _tell(self) -> None:
+    def show(self, desk: Desk) -> None:
+        """Draws the corners on the map as it lies now, tells the field's size, and what to do next."""
         self._help.show(notice_html([self._words(HELP[self._mode])]))
         self._finish.visible = self._mode in (EXCLUDE, CUT)
-        self._drawn = None
-
-    def show(self) -> None:
-        """Draws the corners on the map as it lies now, and tells the field's size."""
-        desk = self._hands.desk()
         self._shift.visible = desk.snapshot.pose is not None
-        key = (desk.snapshot.origin_deg, desk.snapshot.generation, self._document, self._chosen, tuple(self._taps))
+        sketch, document, chosen, taps = self._hands.sketch, self._document, self._chosen, tuple(self._taps)
+        key = (desk.snapshot.origin_deg, sketch.scene_number, document, chosen, taps)
         if key == self._drawn:
             return
         self._drawn = key
-        frame = self._frame()
-        rings = rings_in(frame, self._document)
-        sketch = self._hands.sketch
+        rings = rings_in(self._frame(), document)
         sketch.corners(CORNERS, [tuple(point) for ring in rings for point in ring.tolist()])
-        chosen = [] if self._chosen is None else [tuple(rings[self._chosen[0]][self._chosen[1]].tolist())]
-        sketch.corners(CHOSEN, [*chosen, *self._taps], GREEN)
-        sketch.line(LINE, self._taps, GREEN)
+        marked = [] if chosen is None else [tuple(rings[chosen[0]][chosen[1]].tolist())]
+        sketch.corners(CHOSEN, [*marked, *taps], GREEN)
+        sketch.line(LINE, taps, GREEN)
         area = float(_polygon_area(rings))
         rows = [
             (self._words("area"), area_words(area, desk.units, self._words)),
             (self._words("corners"), str(sum(len(ring) for ring in rings))),
-            (self._words("shifts"), str(len(self._document.shifts))),
+            (self._words("shifts"), str(len(document.shifts))),
         ]
         self._rows.show(rows_html(rows))
 
@@ -151,6 +144,7 @@ class Editing:
                 self._hands.later(lambda: self._remove_near(point))
             case _:
                 self._taps.append(point)
+        self._hands.soon()
 
     def _move_chosen(self, to: tuple[float, float]) -> None:
         corner, self._chosen = self._chosen, None
@@ -181,7 +175,6 @@ class Editing:
             self._words("Cut in two"),
             self._words("The whole field is in the trash; its operations with it."),
         )
-        self._changed()
         self._atelier.cancel()
 
     # --- shifts ----------------------------------------------------------------------------------------------------
@@ -223,7 +216,6 @@ class Editing:
             self._history.append(self._document)
         self._document, self._revision = document, revision
         self._hands.house.show_field(document)
-        self._changed()
 
     def _undo(self) -> None:
         if self._taps:

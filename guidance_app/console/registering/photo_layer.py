@@ -16,21 +16,29 @@ FIRST_SIZE = 200.0
 
 
 class PhotoLayer:
-    """One photo at most. Until two points are matched it lies in the middle of the map, north up."""
+    """One photo at most. Until two points are matched it lies in the middle of the map, north up.
+
+    It may be laid and matched from any thread; ``show``, at the redraw, draws it.
+    """
 
     def __init__(self, sketch: Sketch) -> None:
         self._sketch = sketch
         self.photo: Photo | None = None
         self.points: list[MatchedPoint] = []
-        self._drawn: object = None
+        self._drawn: tuple[Photo, object] | None = None
+        self._taken_away = False
 
     def lay(self, photo: Photo | None, points: tuple[MatchedPoint, ...] = ()) -> None:
         """Lays another photo, or takes it away."""
-        self.photo = photo
         self.points = list(points)
-        self._drawn = None
-        if photo is None:
-            self._sketch.picture(None)
+        self.photo = photo
+        self._taken_away = photo is None
+
+    def match(self, point: MatchedPoint, frame: FieldFrame | None) -> None:
+        """One more point of the photo is known. Raises ``FitError``, and is not taken, when no fit goes through it."""
+        if frame is not None and self.points:
+            fitted([*self.points, point], frame)
+        self.points.append(point)
 
     def frame(self) -> FieldFrame | None:
         """A frame at the first matched point, for a map that has no place of its own."""
@@ -42,25 +50,29 @@ class PhotoLayer:
 
     def placed(self, frame: FieldFrame | None) -> Fit | None:
         """Where it lies now: by its points, else in the middle; None without a photo."""
-        if self.photo is None:
-            return None
+        photo = self.photo
+        return None if photo is None else self._placed(photo, frame)
+
+    def _placed(self, photo: Photo, frame: FieldFrame | None) -> Fit:
         try:
             fit = self.fit(frame)
         except FitError:
             fit = None
-        return fit or _in_the_middle(self.photo)
+        return fit or _in_the_middle(photo)
 
     def show(self, frame: FieldFrame | None) -> None:
-        """Draws it when it, its place, or the map has changed."""
-        if self.photo is None:
+        """Draws it when it, its place, or the map has changed; takes it away when that was asked for."""
+        photo = self.photo
+        if photo is None:
+            if self._taken_away:
+                self._taken_away, self._drawn = False, None
+                self._sketch.picture(None)
             return
-        key = (id(self.photo), tuple(self.points), frame, self._sketch.has_picture)
-        if key == self._drawn:
+        key = (tuple(self.points), frame, self._sketch.scene_number)
+        if self._drawn is not None and self._drawn[0] is photo and self._drawn[1] == key:
             return
-        fit = self.placed(frame)
-        assert fit is not None
-        self._sketch.picture(sheet(self.photo, fit.ground(_corners(self.photo))))
-        self._drawn = (*key[:3], True)
+        self._drawn = photo, key
+        self._sketch.picture(sheet(photo, self._placed(photo, frame).ground(_corners(photo))))
 
 
 def _corners(photo: Photo) -> FloatArray:

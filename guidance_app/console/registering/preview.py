@@ -3,9 +3,13 @@
 from collections.abc import Callable
 from typing import Any
 
+import viser
+
 from guidance_app.boundary import CheckedField
+from guidance_app.console.desk import Desk
 from guidance_app.console.registering.atelier import Atelier, area_words
 from guidance_app.console.widgets import Shown, notice_html, rows_html
+from guidance_app.documents import Units
 from guidance_app.geodesy import FieldFrame
 from guidance_app.store import StoreError
 from guidance_app.view.camera import ViewMode
@@ -20,7 +24,12 @@ class Preview:
     """Shows fields that are not stored yet, one at a time. ``stored`` is called with the name of the last one taken."""
 
     def __init__(
-        self, atelier: Atelier, fields: tuple[CheckedField, ...], origin: str, stored: Callable[[str], None]
+        self,
+        gui: viser.GuiApi,
+        atelier: Atelier,
+        fields: tuple[CheckedField, ...],
+        origin: str,
+        stored: Callable[[str], None],
     ) -> None:
         self._atelier = atelier
         self._hands = atelier.hands
@@ -29,8 +38,7 @@ class Preview:
         self._origin = origin
         self._stored = stored
         self._chosen = 0
-        self._drawn: tuple[int, int] | None = None
-        gui = atelier.gui
+        self._drawn: object = None
         self._which = None
         if len(fields) > 1:
             self._which = gui.add_dropdown(words("Field in the file"), self._options())
@@ -60,22 +68,21 @@ class Preview:
         async def _(_: object) -> None:
             atelier.cancel()
 
-        self._tell()
         self._hands.later(self._show_on_map)
 
     def _options(self) -> tuple[str, ...]:
         return tuple(f"{number}: {one.document.name}" for number, one in enumerate(self._fields, start=1))
 
     def _choose(self) -> None:
+        """On viser's loop, the name at once: the next press may already store this field."""
         assert self._which is not None
         self._chosen = self._options().index(self._which.value)
         self._name.value = self._fields[self._chosen].document.name
-        self._tell()
+        self._hands.soon()
         self._hands.later(self._show_on_map)
 
-    def _tell(self) -> None:
+    def _tell(self, units: Units) -> None:
         field = self._fields[self._chosen]
-        units = self._hands.desk().units
         words = self._words
         rings = field.document.boundary.coordinates
         rows = [
@@ -115,12 +122,13 @@ class Preview:
             raise StoreError(self._words("A name needs 1 to 120 letters.")) from error
         store.save(renamed)
 
-    def show(self) -> None:
-        """Over the map of a drive the ring is drawn as soon as that map has a place."""
+    def show(self, desk: Desk) -> None:
+        """Tells the size; over the map of a drive the ring is drawn as soon as that map has a place."""
+        self._tell(desk.units)
         if not self._hands.house.driving:
             return
-        snapshot = self._hands.desk().snapshot
-        key = (self._chosen, snapshot.ground_version)
+        snapshot = desk.snapshot
+        key = (self._chosen, snapshot.ground_version, self._hands.sketch.scene_number)
         if snapshot.origin_deg is None or key == self._drawn:
             return
         self._drawn = key

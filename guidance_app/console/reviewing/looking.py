@@ -58,7 +58,7 @@ class Looking:
         self._review = review
         self._other: Review | None = None
         self._by = ColourBy.ERROR
-        self._wanted = True
+        self._drawn: object = None
         self._pass: int | None = None
         press(gui, words("Back to the list"), ways.back)
         press(gui, words("Replay"), ways.replay, "green")
@@ -74,7 +74,9 @@ class Looking:
         hands.later(self._show_on_map)
 
     def close(self) -> None:
-        """Nothing of this page is offered any more."""
+        """Nothing of this page is offered any more, and the map is as it was."""
+        for name in (TRACK, OTHER):
+            self._hands.sketch.remove(name)
         self._handing_on.close()
         for address in self._addresses:
             self._hands.house.files.forget(address)
@@ -84,47 +86,38 @@ class Looking:
     def _colour_by(self, name: str) -> None:
         names = {self._words(one): by for one, by in COLOURINGS.items()}
         self._by = names[name]
-        self._wanted = True
+        self._hands.soon()
 
     def _show_on_map(self) -> None:
         if self._hands.house.show_field(self._review.job.field):
             self._hands.look(ViewMode.WHOLE_FIELD)
-        self._wanted = True
 
     def show(self, desk: Desk) -> None:
         """Draws the track when colours or the map's frame have changed."""
         names = {by: self._words(one) for one, by in COLOURINGS.items()}
         self._colouring.show(names[self._by])
-        key = (self._by, desk.snapshot.origin_deg, desk.snapshot.generation, id(self._other))
-        if not self._wanted and key == getattr(self, "_drawn", None):
+        other, sketch = self._other, self._hands.sketch
+        key = (self._by, desk.snapshot.origin_deg, sketch.scene_number, id(other))
+        if key == self._drawn:
             return
-        self._wanted, self._drawn = False, key
+        self._drawn = key
         width = self._review.job.implement.working_width
         made = coloured_track(self._review.log, self._by, self._words, width)
-        sketch = self._hands.sketch
-        sketch.coloured(TRACK, self._placed(made, self._review), made.colours)
-        if self._other is not None:
-            other = coloured_track(self._other.log, self._by, self._words, width)
-            plain = np.tile(np.array(OTHER_COLOUR, np.uint8), (len(other.strokes), 1))
-            sketch.coloured(OTHER, self._placed(other, self._other), plain)
-        self._legend.show(_legend_html(made, self._words("the other drive") if self._other is not None else ""))
-        self._table.show(_table_html(self._review, self._other, self._words))
-
-    def _placed(self, made: Coloured, review: Review) -> FloatArray:
-        """The strokes in the frame of the map; where the map has no place yet, the recording's own is it."""
-        origin, shown = review.log.origin_deg, self._hands.desk().snapshot.origin_deg
-        if origin is None or shown is None or origin == shown or not len(made.strokes):
-            return made.strokes
-        there, here = FieldFrame(*origin), FieldFrame(*shown)
-        moved = here.array_from_lonlat(there.lonlat_from_array(made.strokes.reshape(-1, 2)))
-        return moved.reshape(-1, 2, 2)
+        shown = desk.snapshot.origin_deg
+        sketch.coloured(TRACK, _placed(made, self._review, shown), made.colours)
+        if other is None:
+            sketch.remove(OTHER)
+        else:
+            beside = coloured_track(other.log, self._by, self._words, width)
+            plain = np.tile(np.array(OTHER_COLOUR, np.uint8), (len(beside.strokes), 1))
+            sketch.coloured(OTHER, _placed(beside, other, shown), plain)
+        self._legend.show(_legend_html(made, self._words("the other drive") if other is not None else ""))
+        self._table.show(_table_html(self._review, other, self._words))
 
     def compare_with(self, other: Review | None) -> None:
         """Another recording beside this one; None for none."""
         self._other = other
-        if other is None:
-            self._hands.sketch.remove(OTHER)
-        self._wanted = True
+        self._hands.soon()
 
     # --- charts ----------------------------------------------------------------------------------------------------
 
@@ -190,6 +183,16 @@ class Looking:
         address = self._hands.house.files.offer(make)
         self._addresses.append(address)
         return link_html(address, self._words("Ledger as {kind}", kind=ending[1:].upper()))
+
+
+def _placed(made: Coloured, review: Review, shown: tuple[float, float] | None) -> FloatArray:
+    """The strokes in the frame of the map; where the map has no place yet, the recording's own is it."""
+    origin = review.log.origin_deg
+    if origin is None or shown is None or origin == shown or not len(made.strokes):
+        return made.strokes
+    there, here = FieldFrame(*origin), FieldFrame(*shown)
+    moved = here.array_from_lonlat(there.lonlat_from_array(made.strokes.reshape(-1, 2)))
+    return moved.reshape(-1, 2, 2)
 
 
 def _legend_html(made: Coloured, other: str) -> str:
