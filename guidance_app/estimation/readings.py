@@ -2,12 +2,10 @@
 
 import math
 
-import numpy as np
-
 from guidance_app.estimation.filter import AdaptiveSettings
 from guidance_app.estimation.observation_kernels import NO_COURSE
 from guidance_app.estimation.receiver_noise import DEFAULT_CELL, ReceiverNoise
-from guidance_app.model import FloatArray, Measurement
+from guidance_app.model import Measurement
 
 __all__ = ["common_noise", "readings", "slip_of"]
 
@@ -27,36 +25,36 @@ def slip_of(z: Measurement) -> tuple[float, float]:
     return z.heading_sigma, SENSOR_TIME
 
 
-def common_noise(z: Measurement, noise: ReceiverNoise, settings: AdaptiveSettings) -> FloatArray:
+def common_noise(z: Measurement, noise: ReceiverNoise, settings: AdaptiveSettings) -> tuple[float, ...]:
     """The process noise that all motion models share; see ``kernels`` for the order."""
     slip_sd, slip_time = slip_of(z)
-    return np.array([settings.gyro_walk, slip_sd, slip_time, noise.drift, noise.drift_time, settings.heading_walk])
+    return settings.gyro_walk, slip_sd, slip_time, noise.drift, noise.drift_time, settings.heading_walk
 
 
-def readings(z: Measurement, noise: ReceiverNoise, settings: AdaptiveSettings, bound: float | None) -> FloatArray:
-    """The epoch as a reading vector; ``bound`` is the standing tractor's, see ``stillness``.
+def readings(
+    z: Measurement, noise: ReceiverNoise, settings: AdaptiveSettings, bound: float | None
+) -> tuple[float, ...]:
+    """The epoch as a reading vector, sixteen numbers; ``bound`` is the standing tractor's, see ``stillness``.
 
     Standing is a better reading than the few centimetres a second that a receiver shows at rest, and replaces them.
     """
     cell_east, cell_north = z.cell or (DEFAULT_CELL, DEFAULT_CELL)
     gyro = z.yaw_rate if z.yaw_rate is not None and abs(z.yaw_rate) < FASTEST_GYRO else None
-    return np.array(
-        [
-            z.east,
-            z.north,
-            cell_east,
-            cell_north,
-            noise.white,
-            z.antenna[0],
-            z.antenna[1],
-            settings.gate,
-            z.speed or 0.0,
-            NO_COURSE if z.course is None else z.course,
-            0.0 if z.speed is None or bound is not None else settings.velocity_noise,
-            gyro or 0.0,
-            0.0 if gyro is None else settings.gyro_noise,
-            z.heading or 0.0,
-            0.0 if z.heading is None else math.radians(settings.heading_noise_deg),
-            bound or 0.0,
-        ]
+    return (
+        z.east,
+        z.north,
+        cell_east,
+        cell_north,
+        noise.white,
+        z.antenna[0],
+        z.antenna[1],
+        settings.gate,
+        z.speed or 0.0,
+        NO_COURSE if z.course is None else z.course,
+        0.0 if z.speed is None or bound is not None else settings.velocity_noise,
+        gyro or 0.0,
+        0.0 if gyro is None else settings.gyro_noise,
+        z.heading or 0.0,
+        0.0 if z.heading is None else math.radians(settings.heading_noise_deg),
+        bound or 0.0,
     )

@@ -16,7 +16,7 @@ from guidance_app.estimation.filter import FilterSettings, MotionModel
 from guidance_app.estimation.kernels import SLIP, STATES
 from guidance_app.estimation.observation_kernels import ARM_FORWARD, ARM_RIGHT, READINGS, WHITE, Z_EAST, Z_NORTH
 from guidance_app.estimation.readings import common_noise, readings
-from guidance_app.estimation.receiver_noise import DEFAULT_CELL, noise_of
+from guidance_app.estimation.receiver_noise import DEFAULT_CELL, ReceiverNoise, noise_of
 from guidance_app.estimation.stillness import HELD_FOR, Stillness
 from guidance_app.model import FloatArray, Measurement
 
@@ -45,20 +45,19 @@ class Epochs:
 def epochs_of(piece: list[Measurement], settings: FilterSettings) -> Epochs:
     """The piece as arrays. Its times must grow."""
     noises = [noise_of(z) for z in piece]
-    bounds, silent = _standing(piece)
+    bounds, silent = _standing(piece, noises)
     rows, common = [], []
-    for z, noise, bound, quiet in zip(piece, noises, bounds, silent, strict=True):
-        row = readings(z, noise, settings.adaptive, bound)
-        if quiet:
-            row[WHITE] = 0.0
-        rows.append(row)
+    for z, noise, bound in zip(piece, noises, bounds, strict=True):
+        rows.append(readings(z, noise, settings.adaptive, bound))
         common.append(common_noise(z, noise, settings.adaptive))
     n = SLIP + 1 if any(z.heading is not None for z in piece) else SLIP
     if any(noise.drift > 0.0 for noise in noises):
         n = STATES
     model = _model(piece, settings)
     t, from_row, real = _filled(np.array([z.t for z in piece]))
-    z_rows = np.array(rows)[from_row]
+    z_rows = np.array(rows)
+    z_rows[silent, WHITE] = 0.0
+    z_rows = z_rows[from_row]
     empty = np.setdiff1d(np.arange(READINGS), KEPT_IN_GAPS)
     z_rows[np.ix_(~real, empty)] = 0.0
     models = np.tile((model.acceleration, model.curvature, model.memory), (len(t), 1))
@@ -83,17 +82,17 @@ def _filled(t: FloatArray) -> tuple[FloatArray, NDArray[np.int64], NDArray[np.bo
     return np.array(times), np.array(rows), np.array(real)
 
 
-def _standing(piece: list[Measurement]) -> tuple[list[float | None], list[bool]]:
+def _standing(piece: list[Measurement], noises: list[ReceiverNoise]) -> tuple[list[float | None], list[bool]]:
     """For each epoch the bound of a standing tractor's speed, and whether its fix only repeats a hold's first."""
     bounds: list[float | None] = []
     silent: list[bool] = []
     still = Stillness.of(piece[0])
-    for _, group in groupby(piece, key=lambda z: (z.east, z.north)):
+    for _, group in groupby(zip(piece, noises, strict=True), key=lambda pair: (pair[0].east, pair[0].north)):
         held = list(group)
-        duration = held[-1].t - held[0].t
-        for z in held:
-            still = still.after(z, noise_of(z).white)
-            bound = still.speed_bound(z, noise_of(z).white)
+        duration = held[-1][0].t - held[0][0].t
+        for z, noise in held:
+            still = still.after(z, noise.white)
+            bound = still.speed_bound(z, noise.white)
             if z.speed is None and duration >= HELD_FOR:
                 bound = max(z.cell or (DEFAULT_CELL,)) / (duration * math.sqrt(3.0))
             bounds.append(bound)

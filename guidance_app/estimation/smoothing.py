@@ -63,6 +63,8 @@ GIVE = 1.0
 FARTHEST = np.array([2.0, 2.0, 0.3, 2.0, 0.1, 1.0, 1.0, 2.0, 2.0])
 """How far a sweep moves, at most, the states about which the next one is linearised."""
 NOWHERE = np.zeros((0, STATES))
+SHOWN_ROWS, SHOWN_COLUMNS = (EAST, EAST, NORTH, HEADING), (EAST, NORTH, NORTH, HEADING)
+"""What a pose tells of the covariance: var east, cov, var north, var heading."""
 OFTEN = 0.4
 """At fixes no farther apart than this many seconds no sweep runs away, and the filter's time is saved."""
 SHARP = (2.0, 0.3, 2.0)
@@ -105,11 +107,10 @@ def _smoothed(piece: list[Measurement], settings: FilterSettings) -> list[Pose]:
     means, covariances = _swept(piece, start, epochs, settings)
     if departure is not None and driven_backwards(means) and piece[0].heading is None:
         means, covariances = _swept(piece, replace(start, heading=start.heading + math.pi), epochs, settings)
-    standing = epochs.z[:, STANDING_SD] > 0.0
-    return [
-        _pose(z, means[k], covariances[k], known=departure is not None, still=bool(standing[k]))
-        for z, k in zip(piece, np.flatnonzero(epochs.real), strict=True)
-    ]
+    still = epochs.z[:, STANDING_SD] > 0.0
+    shown = np.column_stack([means[:, : CURVATURE + 1], covariances[:, SHOWN_ROWS, SHOWN_COLUMNS], still])
+    known = departure is not None
+    return [_pose(z, row, known=known) for z, row in zip(piece, shown[epochs.real].tolist(), strict=True)]
 
 
 def _first_departure(piece: list[Measurement]) -> Departure | None:
@@ -247,21 +248,21 @@ def _first_state(z: Measurement, departure: Departure, epochs: Epochs) -> tuple[
     return x, np.ascontiguousarray(p[: epochs.n, : epochs.n])
 
 
-def _pose(z: Measurement, mean: FloatArray, covariance: FloatArray, *, known: bool, still: bool) -> Pose:
-    speed = float(mean[SPEED])
-    standing = still and abs(speed) < STANDING_SPEED
+def _pose(z: Measurement, row: list[float], *, known: bool) -> Pose:
+    """``row`` is the state's first five, the covariance's four that are shown, and 1 if the tractor stands."""
+    east, north, heading, speed, curvature, var_east, cov, var_north, var_heading, still = row
     return Pose(
         t=z.t,
         arrival=z.arrival,
-        east=float(mean[EAST]),
-        north=float(mean[NORTH]),
-        heading=wrap_2pi(float(mean[HEADING])),
+        east=east,
+        north=north,
+        heading=wrap_2pi(heading),
         speed=speed,
-        curvature=float(mean[CURVATURE]),
-        covariance=(float(covariance[EAST, EAST]), float(covariance[EAST, NORTH]), float(covariance[NORTH, NORTH])),
-        heading_sigma=math.sqrt(float(covariance[HEADING, HEADING])),
+        curvature=curvature,
+        covariance=(var_east, cov, var_north),
+        heading_sigma=math.sqrt(var_heading),
         heading_known=known,
-        standing=standing,
+        standing=still == 1.0 and abs(speed) < STANDING_SPEED,
         reverse=speed < -STANDING_SPEED,
         roll=z.roll,
         pitch=z.pitch,

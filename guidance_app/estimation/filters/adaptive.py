@@ -223,7 +223,7 @@ def _started(
             p[:, drift, axis] = p[:, axis, drift] = -(noise.drift**2)
     w = np.full(MODELS, 1.0 / MODELS)
     belief = (x, p, w)
-    epoch = readings(z, noise, settings, None)
+    epoch = np.array(readings(z, noise, settings, None))
     shown = summary(belief, n, epoch, NO_LAG, fresh=False).tolist()
     pose = _pose(z, shown, None, blind=False)
     return _State(z.t, belief, n, still, pose, pose, NO_LAG)
@@ -264,10 +264,10 @@ def _advanced(
     dt = z.t - state.t
     still = state.still.after(z, noise.white)
     bound = still.speed_bound(z, noise.white)
-    epoch = readings(z, noise, settings, bound)
+    epoch = np.array(readings(z, noise, settings, bound))
     seen = state.believed
     last = np.array((seen.east, seen.north, seen.heading, seen.speed, z.t - seen.t))
-    motion = (tables.rows(z), tables.moves(z, dt), common_noise(z, noise, settings), last)
+    motion = (tables.rows(z), tables.moves(z, dt), np.array(common_noise(z, noise, settings)), last)
     unchanged = None
     if bound is not None and still.repeats(z):
         unchanged = _unchanged(state, dt, epoch, motion)
