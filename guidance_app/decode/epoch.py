@@ -59,10 +59,15 @@ class Epoch:
 
     def says_no_fix(self) -> bool:
         """Whether the receiver has said that it has no position."""
-        said = [sentence for kind in POSITION_KINDS if (sentence := self.sentences.get(kind)) is not None]
-        if any(sentence.kind in STRONG_KINDS and sentence.valid is False for sentence in said):
-            return True
-        return bool(said) and all(sentence.valid is False or sentence.latitude_deg is None for sentence in said)
+        said = placed = False
+        for kind in POSITION_KINDS:
+            sentence = self.sentences.get(kind)
+            if sentence is None:
+                continue
+            if sentence.valid is False and kind in STRONG_KINDS:
+                return True
+            said, placed = True, placed or sentence.has_position
+        return said and not placed
 
     def position(self) -> Sentence | None:
         """The sentence whose position counts."""

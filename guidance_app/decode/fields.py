@@ -44,8 +44,10 @@ class Fields:
 
     def text(self, name: str) -> str:
         """The field as it stands, empty where the sentence is too short for it."""
-        position = self._index[name]
-        return self._texts[position] if position < len(self._texts) else ""
+        try:
+            return self._texts[self._index[name]]
+        except IndexError:
+            return ""
 
     def has(self, name: str) -> bool:
         """Whether the sentence is long enough to hold the field, empty or not."""
@@ -156,7 +158,9 @@ def _place(latitude: str, south: str, longitude: str, west: str) -> tuple[float,
     longitude_deg = _degrees(longitude, len(east[1]))
     if latitude_deg > 90.0 or longitude_deg > 180.0:
         return None
-    cell = (grid_cell(latitude_deg, len(north[3] or ""))[0], grid_cell(latitude_deg, len(east[3] or ""))[1])
+    cell = grid_cell(latitude_deg, len(east[3] or ""))
+    if len(north[3] or "") != len(east[3] or ""):
+        cell = (grid_cell(latitude_deg, len(north[3] or ""))[0], cell[1])
     return (-latitude_deg if south == "S" else latitude_deg, -longitude_deg if west == "W" else longitude_deg, cell)
 
 

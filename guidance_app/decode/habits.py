@@ -40,7 +40,7 @@ class Habits:
         """Counts on; the kinds that this epoch should hold."""
         self._settle_crowd()
         self._epoch += 1
-        return frozenset(kind for kind, rhythm in self._rhythm.items() if self._is_due(*rhythm))
+        return frozenset([kind for kind, rhythm in self._rhythm.items() if self._is_due(*rhythm)])
 
     def saw(self, kind: str) -> None:
         """A sentence of this kind belongs to the present epoch."""

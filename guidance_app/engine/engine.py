@@ -215,7 +215,8 @@ class Engine:
         for one in closed:
             match one:
                 case Fix():
-                    yield self._publish(chunk.arrival, changes | self._fix(one))
+                    self._fix(one, changes)
+                    yield self._publish(chunk.arrival, changes)
                     changes = {}
                 case Attitude():
                     self._attitudes.take(one)
@@ -227,18 +228,20 @@ class Engine:
         if changes:
             yield self._publish(chunk.arrival, changes)
 
-    def _fix(self, fix: Fix) -> Changes:
-        """From one fix to guidance: frame, measurement, filter, implement, guidance, coverage."""
+    def _fix(self, fix: Fix, changes: Changes) -> None:
+        """From one fix to guidance: frame, measurement, filter, implement, guidance, coverage. Fills in ``changes``."""
         if self._frame is None:
             self._frame = FieldFrame(fix.latitude_deg, fix.longitude_deg)
             self._work.begin_at(self._frame)
-        changes: Changes = {"fix": fix}
+        changes["fix"] = fix
         if self._snapshot.fix is not None and fix.t > self._snapshot.fix.t:
             changes["fix_interval"] = fix.t - self._snapshot.fix.t
         try:
             measurement = measurement_from_fix(fix, self._attitudes.at(fix.arrival), self._frame, self._tractor)
         except ValueError as error:
-            return changes | NO_POSE | {"notices": (*self._notices(fix.arrival), str(error))}
+            changes |= NO_POSE
+            changes["notices"] = (*self._notices(fix.arrival), str(error))
+            return
         if self._state is SessionState.IDLE:
             self._state = SessionState.DRIVING
         self._raw_pose = self._filter.step(measurement)
@@ -246,24 +249,30 @@ class Engine:
             self._measure(measurement, self._frame)
         if self._roll_drives is not None and self._raw_pose is not None:
             self._roll_drives = self._roll_drives.with_pose(self._raw_pose)
-        return changes | self._guide(fix.arrival, reported=fix.implement_down)
+        self._guide(fix, changes)
 
-    def _guide(self, arrival: float, *, reported: bool | None) -> Changes:
+    def _guide(self, fix: Fix, changes: Changes) -> None:
         pose = self._position.of(self._raw_pose)
         if pose is None:
-            return NO_POSE | {"notices": self._notices(arrival)} | self._procedures
+            changes |= NO_POSE | self._procedures
+            changes["notices"] = self._notices(fix.arrival)
+            return
         implement = self._implement.step(pose)
         prediction = self._predictor.step(pose, self._look_ahead)
         if self._state is not SessionState.ENDED:
-            self._work.step(pose, implement, reported=reported, counted=self._state is SessionState.DRIVING)
+            counted = self._state is SessionState.DRIVING
+            self._work.step(pose, implement, reported=fix.implement_down, counted=counted)
         if prediction is not None:
             prediction = self._work.ahead(prediction)
-        return {"pose": pose, "implement": implement, "prediction": prediction} | self._shown(arrival)
+        changes["pose"], changes["implement"], changes["prediction"] = pose, implement, prediction
+        changes |= self._shown(fix.arrival)
 
     def _shown(self, arrival: float) -> Changes:
         """What there is to guide along, what is worked, every offset in force, and what is under way."""
         shown = self._work.shown_since(self._snapshot, self._position.records)
-        return shown | {"notices": self._notices(arrival)} | self._procedures
+        shown |= self._procedures
+        shown["notices"] = self._notices(arrival)
+        return shown
 
     @property
     def _procedures(self) -> Changes:

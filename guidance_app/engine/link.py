@@ -62,7 +62,7 @@ def after_chunk(state: LinkState, chunk: Chunk, closed: tuple[Observation, ...],
     """What came in may change the state. ``counts`` are the decoder's so far."""
     if not chunk.data and not closed:
         return state
-    fixes = sum(isinstance(one, Fix) for one in closed)
+    fixes = len([one for one in closed if isinstance(one, Fix)])
     status, reason = _told(state, chunk.link, closed, counts[2])
     return LinkState(
         status=status,

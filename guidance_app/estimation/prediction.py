@@ -50,8 +50,8 @@ def _along(pose: Pose, seconds: float) -> tuple[Pose, FloatArray]:
     places = np.empty((steps + 1, 2))
     places[0] = pose.east, pose.north
     turn, fade = fading_arc(places, pose.heading, pose.speed, pose.curvature, seconds, FADING)
-    east, north = places[-1]
-    return _at(pose, seconds, float(east), float(north), pose.heading + turn, pose.curvature * fade), places
+    east, north = places[-1].tolist()
+    return _at(pose, seconds, east, north, pose.heading + turn, pose.curvature * fade), places
 
 
 def _at(pose: Pose, after: float, east: float, north: float, heading: float, curvature: float) -> Pose:
@@ -115,7 +115,8 @@ class Predictor:
         if not LOOK_AHEAD_MIN <= seconds <= LOOK_AHEAD_MAX:
             msg = f"look ahead: {seconds:g} s is not between {LOOK_AHEAD_MIN:g} and {LOOK_AHEAD_MAX:g} s"
             raise ValueError(msg)
-        self._swept = self._swept.after(pose)
+        if self._way is Way.TRACK:
+            self._swept = self._swept.after(pose)
         if abs(pose.speed) < SLOWEST or not pose.heading_known:
             return None
         if self._way is Way.TRACK and len(self._swept.poses) >= 3:

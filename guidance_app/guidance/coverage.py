@@ -11,11 +11,10 @@ import math
 from collections import deque
 from dataclasses import dataclass, replace
 
-import numpy as np
 import shapely
 
 from guidance_app.guidance.continuity import Continuity, is_place
-from guidance_app.guidance.coverage_grid import CoverageGrid, Ground, Patch
+from guidance_app.guidance.coverage_grid import CoverageGrid, Ends, Ground, Patch
 from guidance_app.guidance.trail import Run, StripTrail
 from guidance_app.model import CoverageTotals, Trail
 from guidance_app.model.making import made_quickly
@@ -52,15 +51,20 @@ class _Edge:
     middle: tuple[float, float]
     heading: float
 
-    def run(self, low: float, high: float) -> Run:
-        """The part between two fractions of the width, from the left."""
+    def runs(self, parts: tuple[tuple[float, float], ...]) -> tuple[Run, ...]:
+        """The parts between two fractions of the width each, from the left."""
         (left_east, left_north), (right_east, right_north) = self.left, self.right
         east, north = right_east - left_east, right_north - left_north
-        return (
-            left_east + low * east,
-            left_north + low * north,
-            left_east + high * east,
-            left_north + high * north,
+        return tuple(
+            [
+                (
+                    left_east + low * east,
+                    left_north + low * north,
+                    left_east + high * east,
+                    left_north + high * north,
+                )
+                for low, high in parts
+            ]
         )
 
 
@@ -112,6 +116,8 @@ class Coverage:
         self._trail = StripTrail()
         self._continuity = Continuity()
         self._edge: _Edge | None = None
+        self._ends: tuple[Ends, ...] = ()
+        """Of the parts at work, at the edge."""
         self._state = _State()
         self._unsettled: deque[tuple[float, Patch]] = deque()
         self._sums = _Sums()
@@ -194,7 +200,8 @@ class Coverage:
         self._state = state
         if state.parts:
             self._grid.lay(*edge.middle, edge.heading)
-            runs = tuple(edge.run(*part) for part in state.parts)
+            runs = edge.runs(state.parts)
+            self._ends = tuple(self._grid.ends(run) for run in runs)
             self._trail.begin(runs, (*edge.middle, edge.heading), state.pass_number)
 
     def _end_strip(self) -> None:
@@ -203,17 +210,18 @@ class Coverage:
             self._grid.settle(self._unsettled.popleft()[1])
 
     def _work(self, before: _Edge, edge: _Edge) -> None:
-        runs = tuple(edge.run(*part) for part in self._state.parts)
+        runs = edge.runs(self._state.parts)
         self._trail.add(runs, (*edge.middle, edge.heading))
         distance = math.dist(before.middle, edge.middle)
         seconds = min(edge.t - before.t, distance / SLOWEST)
-        sums = [self._sums, self._by_pass.setdefault(self._state.pass_number, _Sums())]
+        sums = (self._sums, self._sums_of(self._state.pass_number))
         for one in sums:
             one.distance += distance
             one.seconds += seconds
         self._settle_behind()
-        for part, run in zip(self._state.parts, runs, strict=True):
-            patch = self._swept(before.run(*part), run)
+        ends = tuple([self._grid.ends(run) for run in runs])
+        for start, end in zip(self._ends, ends, strict=True):
+            patch = self._grid.patch(start, end)
             self._unsettled.append((self._sums.distance, patch))
             worked, twice, field, headland = self._grid.paint(patch)
             for one in sums:
@@ -221,16 +229,18 @@ class Coverage:
                 one.twice += twice
                 one.field += field
                 one.headland += headland
+        self._ends = ends
+
+    def _sums_of(self, pass_number: int | None) -> _Sums:
+        found = self._by_pass.get(pass_number)
+        if found is None:
+            found = self._by_pass[pass_number] = _Sums()
+        return found
 
     def _settle_behind(self) -> None:
         """Work on what lies more than a working width back is a second time."""
         while self._unsettled and self._sums.distance - self._unsettled[0][0] > self._width:
             self._grid.settle(self._unsettled.popleft()[1])
-
-    def _swept(self, before: Run, after: Run) -> Patch:
-        cells = self._grid.cells
-        corners = [cells(*before[:2]), cells(*before[2:]), cells(*after[2:]), cells(*after[:2])]
-        return self._grid.patch(np.array(corners))
 
     # --- what is handed out -----------------------------------------------------------------------------------------
 

@@ -30,7 +30,7 @@ from guidance_app.guidance.coverage_kernels import (
 )
 from guidance_app.model import FloatArray
 
-__all__ = ["CellCounts", "CoverageGrid", "Ground", "Patch"]
+__all__ = ["CellCounts", "CoverageGrid", "Ends", "Ground", "Patch"]
 
 LONG_EDGE = 0.05
 """Of the field's outline: along shorter edges little is worked."""
@@ -40,6 +40,9 @@ TRIED = np.radians(np.arange(0.0, 45.0, 0.25))
 
 TilePlace = tuple[int, int]
 """Column and row of a tile."""
+
+Ends = tuple[float, float, float, float]
+"""Column and row of the left end of what works, then of its right end."""
 
 Patch = tuple[FloatArray, tuple[TilePlace, ...]]
 """A quadrilateral of shape (4, 2), in cells, and the tiles that it may touch."""
@@ -131,10 +134,7 @@ EVERYWHERE.setflags(write=False)
 
 
 class CoverageGrid:
-    """Marks quadrilaterals and counts; ``cells`` gives the cells of a position.
-
-    The first position asked for, with its heading, lays the grid.
-    """
+    """Marks quadrilaterals and counts. Work is given in the cells of the grid, which ``ends`` finds."""
 
     def __init__(self, cell: float, ground: Ground) -> None:
         self.cell = cell
@@ -156,19 +156,20 @@ class CoverageGrid:
         if self._axes is None:
             self._axes = _Axes.along(east, north, heading, self.cell, self._ground)
 
-    def cells(self, east: float, north: float) -> tuple[float, float]:
-        """Column and row of a position; only after ``lay``."""
-        assert self._axes is not None
-        return self._axes.cells(east, north)
-
     @property
     def tiles(self) -> int:
         """How many tiles exist: 24 kB each, 40 kB where a boundary crosses."""
         return len(self._tiles)
 
-    def patch(self, corners: FloatArray) -> Patch:
-        """A quadrilateral of shape (4, 2), in cells, ready to be painted and later settled."""
-        (x0, y0), (x1, y1), (x2, y2), (x3, y3) = corners.tolist()
+    def ends(self, run: Ends) -> Ends:
+        """In cells, from east and north of the left and of the right end; only after ``lay``."""
+        assert self._axes is not None
+        return (*self._axes.cells(run[0], run[1]), *self._axes.cells(run[2], run[3]))
+
+    def patch(self, start: Ends, end: Ends) -> Patch:
+        """The quadrilateral between two places of what works, ready to be painted and later settled."""
+        (x0, y0, x1, y1), (x3, y3, x2, y2) = start, end
+        corners = np.array((x0, y0, x1, y1, x2, y2, x3, y3)).reshape(4, 2)
         west, east = int(min(x0, x1, x2, x3) // TILE), int(max(x0, x1, x2, x3) // TILE)
         south, north = int(min(y0, y1, y2, y3) // TILE), int(max(y0, y1, y2, y3) // TILE)
         if west == east and south == north:

@@ -51,6 +51,9 @@ class Progress:
         """Counts the stretch between two along-track distances, in either order."""
         low, high = min(start, end), max(start, end)
         known = self._stretches.get(key, ())
+        if len(known) == 1 and known[0][0] <= high + JOINED and low - JOINED <= known[0][1]:
+            self._stretches[key] = ((min(low, known[0][0]), max(high, known[0][1])),)  # as nearly every time
+            return
         first = bisect.bisect_left(known, low - JOINED, key=lambda stretch: stretch[1])
         last = bisect.bisect_right(known, high + JOINED, key=lambda stretch: stretch[0])
         if first < last:
@@ -60,7 +63,7 @@ class Progress:
 
     def worked(self, key: int) -> float:
         """Metres of the pass worked so far."""
-        return math.fsum(high - low for low, high in self._stretches.get(key, ()))
+        return math.fsum([high - low for low, high in self._stretches.get(key, ())])
 
     def spans(self, key: int) -> Stretches:
         """The stretches worked so far, each from and to so many metres along the pass."""

@@ -368,8 +368,7 @@ class Tracker:
         target, length = reading.line.target, reading.line.polyline.length
         if target.endless:
             return None
-        missing = enough(length) - self._progress.worked(reading.line.key)
-        if target.closed and reading.to_end < missing:
+        if target.closed and reading.to_end < enough(length) - self._progress.worked(reading.line.key):
             return reading.to_end + length
         return max(reading.to_end, 0.0)
 

@@ -39,10 +39,14 @@ Run = tuple[float, float, float, float]
 
 
 class _Rows:
-    """A growing piece: rows of numbers, of which the last follows the tractor until it is far enough."""
+    """A growing piece: rows of numbers, of which the last follows the tractor until it is far enough.
+
+    The others lie in a table and never change.
+    """
 
     def __init__(self, columns: int) -> None:
         self._table = np.empty((MOST_ROWS, columns))
+        self._row: tuple[float, ...] = ()
         self._before: Place = (0.0, 0.0, 0.0)
         self._last: Place = (0.0, 0.0, 0.0)
         self.count = 0
@@ -56,13 +60,12 @@ class _Rows:
         """Only while not ``full``."""
         if self.count == 0:
             self._before = place
-        if self.count < 2:
+            self.count = 1
+        elif self.count == 1 or _apart(self._before, self._last):
+            self._table[self.count - 1] = self._row
+            self._before = self._before if self.count == 1 else self._last
             self.count += 1
-        elif _apart(self._before, self._last):
-            self._before = self._last
-            self.count += 1
-        self._table[self.count - 1] = row
-        self._last = place
+        self._row, self._last = row, place
 
     def full(self, rows: int = MOST_ROWS) -> bool:
         """Whether so many rows stand fast."""
@@ -71,16 +74,16 @@ class _Rows:
     def follower(self) -> "_Rows":
         """A new piece that begins where this one ends."""
         other = _Rows(self._table.shape[1])
-        other.add(tuple(self._table[self.count - 1].tolist()), self._last)
+        other.add(self._row, self._last)
         return other
 
-    def copied(self) -> FloatArray:
-        """Shape (count, columns), for good."""
-        return _frozen(self._table[: self.count].copy())
+    def now(self, strip: tuple[int, int | None] | None = None) -> "_Now":
+        """As it is now: of the track, or of the ``strip`` with this index and pass."""
+        return _Now(self._table, self._row, self.count, strip)
 
     def thinned(self) -> FloatArray:
         """The same without the rows that lie within 3 cm of the line through the others, in every pair of columns."""
-        table = self._table[: self.count]
+        table = _whole(self._table, self._row, self.count)
         kept = np.zeros(self.count, dtype=bool)
         numbers = np.arange(self.count, dtype=float)
         for column in range(0, table.shape[1], 2):
@@ -88,6 +91,34 @@ class _Rows:
             simple = shapely.simplify(line, THINNED, preserve_topology=False)
             kept[shapely.get_coordinates(simple, include_z=True)[:, 2].astype(int)] = True
         return _frozen(table[kept])
+
+
+class _Now:
+    """A growing piece at one instant, whatever happens to it later. Its arrays are made at the first look."""
+
+    __slots__ = ("_count", "_made", "_row", "_strip", "_table")
+
+    def __init__(
+        self, table: FloatArray, row: tuple[float, ...], count: int, strip: tuple[int, int | None] | None
+    ) -> None:
+        self._table = table
+        self._row = row
+        self._count = count
+        self._strip = strip
+        self._made: FloatArray | Strip | None = None
+
+    def __call__(self) -> FloatArray | Strip:
+        if self._made is None:
+            table = _frozen(_whole(self._table, self._row, self._count))
+            self._made = table if self._strip is None else _strip(self._strip, table, sealed=False)
+        return self._made
+
+
+def _whole(table: FloatArray, row: tuple[float, ...], count: int) -> FloatArray:
+    """The rows of a piece, the last one too."""
+    rows = table[:count].copy()
+    rows[-1] = row
+    return rows
 
 
 def _apart(before: Place, after: Place) -> bool:
@@ -134,7 +165,7 @@ class TrackTrail:
     @property
     def trail(self) -> Trail:
         """As it is now."""
-        return Trail(self._pieces, len(self._pieces), self._rows.copied() if self._rows.count else None)
+        return Trail(self._pieces, len(self._pieces), self._rows.now() if self._rows.count else None)
 
 
 class StripTrail:
@@ -191,18 +222,19 @@ class StripTrail:
     def _seal(self, lane: _Rows, i: int) -> None:
         index = self._index if i == self._widest else self._new_index()
         if lane.count >= 2:
-            self._pieces.append(_strip(index, lane.thinned(), self._pass_number, sealed=True))
+            self._pieces.append(_strip((index, self._pass_number), lane.thinned(), sealed=True))
         if i == self._widest:
             self._index = self._new_index()
 
     @property
     def trail(self) -> Trail:
         """As it is now."""
-        strip = None
-        if self._lanes and self._lanes[self._widest].count >= 2:
-            strip = _strip(self._index, self._lanes[self._widest].copied(), self._pass_number, sealed=False)
-        return Trail(self._pieces, len(self._pieces), strip)
+        widest = self._lanes[self._widest] if self._lanes else None
+        grows = widest is not None and widest.count >= 2
+        growing = widest.now((self._index, self._pass_number)) if widest is not None and grows else None
+        return Trail(self._pieces, len(self._pieces), growing)
 
 
-def _strip(index: int, table: FloatArray, pass_number: int | None, *, sealed: bool) -> Strip:
+def _strip(which: tuple[int, int | None], table: FloatArray, *, sealed: bool) -> Strip:
+    index, pass_number = which
     return Strip(index, table[:, :2], table[:, 2:], pass_number, sealed=sealed)

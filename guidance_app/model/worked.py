@@ -1,5 +1,6 @@
 """What grows: worked ground, the driven track, and their sums."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from guidance_app.model.arrays import FloatArray
@@ -32,13 +33,19 @@ class Strip:
 class Trail:
     """What grows: sealed pieces in a shared append-only list, of which the first ``count`` belong to this snapshot.
 
-    ``pieces`` are arrays of shape (N, 2) for the track and ``Strip`` for worked ground; ``open_piece`` is the one
-    that still grows. A reader remembers how many it has seen and takes the rest.
+    ``pieces`` are arrays of shape (N, 2) for the track and ``Strip`` for worked ground. A reader remembers how many it
+    has seen and takes the rest. ``growing`` gives the piece that still grows, as it was then and always the same one:
+    it is only made when somebody looks, for most snapshots are never drawn.
     """
 
     pieces: list[FloatArray] | list[Strip]
     count: int
-    open_piece: FloatArray | Strip | None
+    growing: Callable[[], FloatArray | Strip] | None = None
+
+    @property
+    def open_piece(self) -> FloatArray | Strip | None:
+        """The piece that still grows; None while there is none."""
+        return None if self.growing is None else self.growing()
 
 
 @made_quickly

@@ -70,7 +70,7 @@ def strip(index: int, points: FloatArray, width: float = 6.0, *, sealed: bool = 
 
 def trail(pieces: list[Any], open_piece: Any = None) -> Trail:
     """All these pieces, and one that still grows."""
-    return Trail(pieces, len(pieces), open_piece)
+    return Trail(pieces, len(pieces), None if open_piece is None else lambda: open_piece)
 
 
 def _plan(passes: tuple[Pass, ...]) -> Plan:
