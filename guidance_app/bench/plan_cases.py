@@ -1,5 +1,6 @@
 """What one plan of one field comes to, measured from its segments alone."""
 
+import itertools
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from guidance_app.guidance.costs import joins_of
 from guidance_app.guidance.planning import PlanRequest, plan_operation
 from guidance_app.model import FloatArray, Plan, Segment, SegmentKind
 
-__all__ = ["Case", "case_of", "line_of", "mainland_of", "outside"]
+__all__ = ["Case", "case_of", "line_of", "mainland_of", "outside", "tightest"]
 
 SAMPLE = 0.25
 """Metres between the points of a path that must lie inside."""
@@ -20,8 +21,8 @@ SAMPLE = 0.25
 GRID = 1e-4
 """Metres to which strips are snapped before they are joined; without it ground is lost between adjacent ones."""
 
-SHORTEST_CHORD = 1e-3
-"""Metres; the bend at a shorter chord says nothing."""
+SAME = 1e-6
+"""Metres; nearer points of a path are one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +58,7 @@ def case_of(field: str, polygon: shapely.Polygon, request: PlanRequest) -> Case:
         outside=sum(outside(line_of(each), polygon) for each in plan.segments),
         joins=len(joins),
         unfit=sum(not all(each.fits for each in join) for join in joins),
-        tightest=max(_tightest(each, request.radius) for each in plan.segments if each.fits),
+        tightest=tightest(plan.segments, request.radius),
         passes=sum(each.kind is SegmentKind.PASS for each in plan.segments),
         idle_ratio=plan.costs.idle_m / plan.costs.work_m,
         cpu_s=seconds,
@@ -98,12 +99,27 @@ def _swath(segment: Segment, width: float) -> BaseGeometry:
     return swath
 
 
-def _tightest(segment: Segment, radius: float) -> float:
-    points: FloatArray = np.vstack([segment.points, segment.points[:2]]) if segment.closed else segment.points
-    steps = np.diff(points, axis=0)
+def tightest(segments: Sequence[Segment], radius: float) -> float:
+    """The tightest bend of what fits, in bends of the turning circle: at every point, from segment to segment too.
+
+    A bend is the turn at a point over the mean of the chords before and after it. Where the gear changes the tractor
+    stands, and a path may turn back.
+    """
+    fitting = itertools.groupby(segments, key=lambda each: (each.fits, each.reverse))
+    paths = [_path_of(list(run)) for (fits, _), run in fitting if fits]
+    paths.extend(np.vstack([each.points, each.points[:2]]) for each in segments if each.closed)
+    return max((float(radius * _bends(path).max(initial=0.0)) for path in paths), default=0.0)
+
+
+def _path_of(run: Sequence[Segment]) -> FloatArray:
+    """The points (N, 2) of segments driven on end; one that is closed comes back to its first point."""
+    return np.vstack([np.vstack([each.points, each.points[:1]]) if each.closed else each.points for each in run])
+
+
+def _bends(path: FloatArray) -> FloatArray:
+    steps = np.diff(path, axis=0)
+    steps = steps[np.hypot(steps[:, 0], steps[:, 1]) > SAME]
     lengths = np.hypot(steps[:, 0], steps[:, 1])
-    yaw = np.arctan2(steps[:, 1], steps[:, 0])
-    turn = np.abs(np.mod(np.diff(yaw) + np.pi, 2 * np.pi) - np.pi)
-    chord = (lengths[1:] + lengths[:-1]) / 2
-    bends = turn[chord > SHORTEST_CHORD] / chord[chord > SHORTEST_CHORD]
-    return float(radius * bends.max(initial=0.0))
+    turn = np.diff(np.arctan2(steps[:, 1], steps[:, 0]))
+    bends: FloatArray = np.abs(np.mod(turn + np.pi, 2 * np.pi) - np.pi) * 2 / (lengths[1:] + lengths[:-1])
+    return bends

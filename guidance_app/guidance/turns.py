@@ -25,8 +25,8 @@ from guidance_app.model import FloatArray
 
 __all__ = ["Turner"]
 
-RADIUS_MARGIN = 1.002
-"""Turns are laid on a circle wider by this, so that their chords do not bend more than the turning radius."""
+RADIUS_MARGIN = 1.0055
+"""Turns are laid on a circle wider by this: then even their longest chords bend no more than the turning radius."""
 
 TRIES = 8
 """Candidates of which the missing metres are measured where none fits, shortest first."""

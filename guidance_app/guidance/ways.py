@@ -83,8 +83,10 @@ class Ways:
         for corridor in self._prepared()[0]:
             string = corridor.path(start[:2], end[:2])
             if string is not None and len(string) > 1:
-                stroke = Stroke(eased_stroke(string, self._turner.radius))
-                turn = self._along(_Tracks(self._turner, [stroke]), start, end, np.inf)
+                eased = eased_stroke(string, self._turner.radius)
+                if eased is None:
+                    continue
+                turn = self._along(_Tracks(self._turner, [Stroke(eased)]), start, end, np.inf)
                 if turn is not None:
                     return turn
         return None

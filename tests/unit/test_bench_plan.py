@@ -2,6 +2,7 @@
 
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,13 +11,13 @@ import shapely
 
 from guidance_app.bench import plan
 from guidance_app.bench.errors import BenchError
-from guidance_app.bench.plan_cases import case_of, outside
+from guidance_app.bench.plan_cases import case_of, outside, tightest
 from guidance_app.bench.plan_counter import counter_row
 from guidance_app.bench.plan_peers import peer_case
 from guidance_app.bench.rows import Row
 from guidance_app.geodesy import FieldFrame
 from guidance_app.guidance.planning import PlanRequest
-from guidance_app.model import FloatArray
+from guidance_app.model import FloatArray, Segment, SegmentKind
 
 FIELD = shapely.Polygon([(0, 0), (150, 0), (170, 90), (0, 80)])
 ASKED = (
@@ -73,8 +74,25 @@ def test_a_case_counts_what_lies_outside() -> None:
     case = case_of("a", FIELD, PlanRequest(width=9.0))
     assert case.outside == 0
     assert case.worked > 0.98
-    assert case.tightest < 1.05
+    assert 0.9 < case.tightest <= 1.0
     assert outside(shapely.LineString([(10, 10), (10, -1)]), FIELD) == 5  # the one on the boundary too
+
+
+def test_the_tightest_bend_is_found_wherever_it_is() -> None:
+    def way(points: FloatArray, **more: bool) -> Segment:
+        closed = more.get("closed", False)
+        return Segment(SegmentKind.PASS, 1, points, implement_down=True, length=1.0, closed=closed)
+
+    angles = np.arange(0.0, 2 * np.pi, 0.05)
+    circle = 4.0 * np.column_stack([np.cos(angles), np.sin(angles)])
+    assert tightest([way(circle)], 5.0) == pytest.approx(1.25, rel=1e-3)
+    assert tightest([way(np.array([[0.0, 0.0], [9.0, 9.0]]), closed=True)], 5.0) > 1.0
+    corner = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]])
+    sharp = 5.0 * np.pi / 2 / 10.0
+    assert tightest([way(corner)], 5.0) == pytest.approx(sharp)
+    assert tightest([way(corner[:2]), way(corner[1:])], 5.0) == pytest.approx(sharp)
+    assert tightest([way(corner[:2]), replace(way(corner[1:]), reverse=True)], 5.0) == 0.0
+    assert tightest([replace(way(corner), fits=False)], 5.0) == 0.0
 
 
 def test_a_peer_is_measured_and_a_peer_that_fails_is_told() -> None:

@@ -1,12 +1,11 @@
 """Whatever field and machine are given, there is a plan inside the field or one sentence, never a crash."""
 
-import math
-
 import numpy as np
 import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.star_fields import stars
 
 from guidance_app.bench.plan_searches import ODD_FIELDS
 from guidance_app.documents import Direction, Method
@@ -71,24 +70,6 @@ def test_a_start_outside_is_said_and_planned() -> None:
 def test_what_is_no_field_is_refused_in_a_sentence(polygon: shapely.Polygon, words: str) -> None:
     with pytest.raises(PlanError, match=words):
         plan_operation(polygon, PlanRequest(width=6.0))
-
-
-@st.composite
-def stars(draw: st.DrawFn) -> shapely.Polygon:
-    """Fields of any shape round a middle, some with a hole, some with points again and again."""
-    count = draw(st.integers(3, 14))
-    radii = draw(st.lists(st.floats(4, 70), min_size=count, max_size=count))
-    angles = np.linspace(0, 2 * np.pi, count, endpoint=False)
-    points = [(radius * math.cos(angle), radius * math.sin(angle)) for radius, angle in zip(radii, angles, strict=True)]
-    if draw(st.booleans()):
-        points = [point for point in points for _ in range(2)]
-    polygon = shapely.Polygon(points)
-    hole = draw(st.none() | st.floats(1, 20))
-    if hole is None:
-        return polygon
-    place = draw(st.tuples(st.floats(-35, 35), st.floats(-35, 35)))
-    cut = polygon.difference(shapely.Point(place).buffer(hole, quad_segs=3))
-    return cut if isinstance(cut, shapely.Polygon) else polygon
 
 
 @settings(max_examples=12, deadline=None)

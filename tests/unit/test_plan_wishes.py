@@ -9,6 +9,7 @@ import pytest
 import shapely
 from pydantic import ValidationError
 
+from guidance_app.bench.plan_cases import tightest
 from guidance_app.boundary import frame_of, polygon_in
 from guidance_app.documents import (
     Direction,
@@ -220,21 +221,9 @@ def test_a_trailed_implement_is_never_backed_up() -> None:
     assert not any(each.reverse for each in plan.segments if each.fits)
 
 
-def tight(plan: Plan, radius: float) -> float:
-    worst = 0.0
-    for each in plan.segments:
-        points = np.vstack([each.points, each.points[:2]]) if each.closed else each.points
-        steps = np.diff(points, axis=0)
-        lengths = np.hypot(*steps.T)
-        turn = np.abs((np.diff(np.arctan2(steps[:, 1], steps[:, 0])) + np.pi) % (2 * np.pi) - np.pi)
-        chord = (lengths[1:] + lengths[:-1]) / 2
-        worst = max(worst, float(radius * (turn / chord).max(initial=0.0)))
-    return worst
-
-
 @pytest.mark.parametrize("change", [{}, {"square_corners": False}, {"reverse_allowed": False}])
 def test_nothing_that_fits_bends_tighter_than_the_turning_circle(change: Mapping[str, Any]) -> None:
     field = shapely.Polygon([(0, 0), (200, 0), (230, 90), (120, 150), (0, 130)])
     plan = plan_operation(field, PlanRequest(width=9.0, **change))
     assert all(each.fits for each in plan.segments)
-    assert tight(plan, 5.0) <= 1.02
+    assert tightest(plan.segments, 5.0) <= 1.0
