@@ -94,7 +94,8 @@ class Ways:
     def _flagged(self, start: FloatArray, end: FloatArray) -> Turn:
         string = self._prepared()[1].path(start[:2], end[:2])
         assert string is not None, "the field is in one piece"
-        leg = leg_of(string, reverse=False)
+        on_the_spot = len(string) == 1
+        leg = leg_of(np.stack([start[:2], end[:2]]) if on_the_spot else string, reverse=False)
         return Turn((leg,), leg.length, self._turner.missing(start, end), transfer=True)
 
     def _prepared(self) -> tuple[list[Corridor], Corridor]:

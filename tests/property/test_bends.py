@@ -10,7 +10,7 @@ from guidance_app.documents import Direction, Method
 from guidance_app.guidance.planning import PlanError, PlanRequest, plan_operation
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(
     stars(),
     st.sampled_from([3.0, 6.0, 12.0, 30.0]),

@@ -10,6 +10,9 @@ from support.star_fields import stars
 from guidance_app.bench.plan_searches import ODD_FIELDS
 from guidance_app.documents import Direction, Method
 from guidance_app.guidance.planning import PlanError, PlanRequest, plan_operation
+from guidance_app.guidance.room import Room
+from guidance_app.guidance.turns import Turner
+from guidance_app.guidance.ways import Ways
 from guidance_app.model import Plan, SegmentKind
 
 CENTIMETRE = 0.01
@@ -88,3 +91,11 @@ def test_any_field_and_any_machine(
         width=width, radius=radius, method=method, direction=direction, reverse_allowed=reverse, offset_right=0.4
     )
     planned(polygon, request)
+
+
+def test_a_way_that_turns_back_on_the_spot_is_flagged() -> None:
+    yard, request = shapely.box(0, 0, 8, 8), PlanRequest(width=3.0, reverse_allowed=False)
+    turner = Turner(Room(yard, request.body), request)
+    way = Ways(turner, [], [yard]).way(np.array([4.0, 4.0, 0.0]), np.array([4.0, 4.0, np.pi]))
+    assert not way.fits
+    assert way.length == 0.0
