@@ -32,7 +32,8 @@ from guidance_app.documents import Job
 from guidance_app.engine import Engine
 from guidance_app.model import Chunk, Command, Snapshot
 from guidance_app.runtime import SessionManager, Tap
-from guidance_app.view.bar import bar_json, bar_of
+from guidance_app.view.bar import bar_of
+from guidance_app.view.bar_wire import bar_json
 
 __all__ = ["Growth", "Hour", "Joining", "Stretch", "add_parser", "measured", "rows_of", "run"]
 

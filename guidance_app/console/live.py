@@ -20,7 +20,8 @@ from guidance_app.console.clock import shown_instant
 from guidance_app.console.tasks import until_one_ends
 from guidance_app.model import Snapshot
 from guidance_app.runtime import Session
-from guidance_app.view.bar import bar_json, bar_of, style_json
+from guidance_app.view.bar import bar_of
+from guidance_app.view.bar_wire import bar_json, style_json
 
 __all__ = ["LiveHub"]
 

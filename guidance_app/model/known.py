@@ -38,6 +38,8 @@ class LinkStatus(StrEnum):
 
     DOWN = "down"
     ENDED = "ended"
+    UNUSED = "not in use"
+    """Nothing is driven, so no receiver is read."""
 
 
 @made_quickly

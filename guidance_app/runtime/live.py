@@ -38,7 +38,8 @@ TOLD_EVERY = 500
 class LiveSession:
     """Drives the engine from a source as its bytes come in. ``replay`` is None: nobody can wind a receiver back.
 
-    ``recorder`` is closed with the session. ``notices`` are shown beside those of field and plan.
+    ``recorder`` is closed with the session. ``notices`` are shown beside those of field and plan. Without a ``source``
+    nothing is driven: it plans and shows its job.
     """
 
     replay = None
@@ -46,7 +47,7 @@ class LiveSession:
     def __init__(
         self,
         job: Job,
-        source: Source,
+        source: Source | None,
         filter_name: str | None = None,
         settings: FilterSettings | None = None,
         *,
@@ -128,8 +129,11 @@ class LiveSession:
             self._step(SourceDown(self._begin, INTERRUPTED, link))
 
     def _read(self) -> None:
+        source = self._source
+        if source is None:
+            return
         try:
-            for event in self._source.events(self._stop):
+            for event in source.events(self._stop):
                 later = replace(event, arrival=self._begin + event.arrival) if self._begin else event
                 self.tap.hear(later)
                 self._events.put(later)
@@ -138,11 +142,13 @@ class LiveSession:
             self._events.put(
                 SourceDown(
                     self.now(),
-                    sentence("{description} failed: {reason}", description=self._source.description, reason=str(error)),
+                    sentence("{description} failed: {reason}", description=source.description, reason=str(error)),
                 )
             )
 
     def _run(self) -> None:
+        if self._source is None:
+            self._publish(self._engine.unused())
         while not self._stop.is_set():
             try:
                 event = self._events.get(timeout=self._patience())

@@ -7,12 +7,11 @@ changes with each one, so that a screen knows that it has to be made anew.
 
 import logging
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from guidance_app.documents import Implement, Job, Receiver, Settings, Tractor
-from guidance_app.language import sentence
-from guidance_app.model import Chunk, Command, SessionState, Snapshot, SourceDown, SourceUp
+from guidance_app.model import Command, SessionState, Snapshot
 from guidance_app.runtime.live import LiveSession
 from guidance_app.runtime.session import Hearer, Session
 from guidance_app.runtime.tap import Tap
@@ -23,20 +22,6 @@ if TYPE_CHECKING:
 __all__ = ["SessionManager", "idle_job", "idle_session"]
 
 log = logging.getLogger(__name__)
-
-NO_SOURCE = sentence("no receiver in use: start a drive")
-
-
-class _Unplugged:
-    """The source of a console that does not drive: says so and ends."""
-
-    description = "no receiver"
-    duration: float | None = None
-    live = True
-
-    def events(self, stop: threading.Event) -> Iterator[Chunk | SourceUp | SourceDown]:
-        del stop
-        yield SourceDown(0.0, NO_SOURCE, ended=True)
 
 
 def idle_job(job: Job | None = None) -> Job:
@@ -50,7 +35,7 @@ def idle_job(job: Job | None = None) -> Job:
 
 def idle_session(job: Job | None = None) -> LiveSession:
     """A session without a receiver, that shows the field of its job if there is one."""
-    return LiveSession(idle_job(job), _Unplugged())
+    return LiveSession(idle_job(job), None)
 
 
 def _shown_as(job: Job, settings: Settings | None) -> Job:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from guidance_app.decode.nmea import SENTENCES
 from guidance_app.language import Words
 from guidance_app.model import ATTITUDE, CORRECTIONS, LinkStatus, Satellite, Snapshot
-from guidance_app.view.bar import QUALITIES
+from guidance_app.view.bar_states import QUALITIES
 from guidance_app.view.links import sensor_words
 from guidance_app.view.status import ABSENT, Level, age_words, link_words
 

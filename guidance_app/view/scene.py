@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from guidance_app.angles import east_north
 from guidance_app.estimation.prediction import pose_after
 from guidance_app.model import FloatArray, Guidance, Pass, Pose, Snapshot, TurnGuide
-from guidance_app.view.bar import STALE_AFTER_S, TURN_NOW_S, TURN_SOON_S
+from guidance_app.view.bar import TURN_NOW_S, TURN_SOON_S
+from guidance_app.view.bar_states import STALE_AFTER_S
 from guidance_app.view.camera import ViewMode
 from guidance_app.view.colours import Palette, Rgb, vertex_source
 from guidance_app.view.numerals import painted

@@ -19,7 +19,7 @@ from guidance_app.model import (
     OffsetRecord,
     Snapshot,
 )
-from guidance_app.view.bar import QUALITIES, STALE_AFTER_S
+from guidance_app.view.bar_states import QUALITIES, STALE_AFTER_S
 from guidance_app.view.drive import Press, work_press
 from guidance_app.view.links import beside_notices
 from guidance_app.view.units import INCH, area_text, offset_text, speed_text, speed_unit
@@ -238,6 +238,7 @@ _LINK_WORDS = {
     LinkStatus.CORRECTED: (message("Corrections arrive"), GOOD),
     LinkStatus.DOWN: (message("The receiver is gone"), BAD),
     LinkStatus.ENDED: (message("The recording has ended"), OFF),
+    LinkStatus.UNUSED: (message("No receiver is in use"), OFF),
 }
 
 

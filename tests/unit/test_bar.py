@@ -20,16 +20,9 @@ from guidance_app.model import (
     Snapshot,
     TurnGuide,
 )
-from guidance_app.view.bar import (
-    TROUBLES,
-    BarState,
-    Steering,
-    TurnLevel,
-    bar_json,
-    bar_of,
-    lamp_zones,
-    style_json,
-)
+from guidance_app.view.bar import Steering, TurnLevel, bar_of
+from guidance_app.view.bar_states import TROUBLES, BarState
+from guidance_app.view.bar_wire import bar_json, lamp_zones, style_json
 
 MICROMETRE = 1e-6
 AT = 100.0

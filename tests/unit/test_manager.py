@@ -4,8 +4,10 @@ import threading
 
 from support.sessions import HandSession, driving
 
-from guidance_app.model import SetWork, Snapshot
+from guidance_app.documents import Settings
+from guidance_app.model import LinkStatus, SetWork, Snapshot
 from guidance_app.runtime import SessionManager
+from guidance_app.view.bar import bar_of
 
 
 def test_who_hears_is_carried_over_to_the_next_session() -> None:
@@ -61,7 +63,7 @@ def test_without_a_session_it_rests_and_says_so() -> None:
     said = threading.Event()
 
     def hear(snapshot: Snapshot) -> None:
-        if "start a drive" in snapshot.link.reason:
+        if snapshot.link.status is LinkStatus.UNUSED:
             said.set()
 
     manager.subscribe(hear)
@@ -69,3 +71,4 @@ def test_without_a_session_it_rests_and_says_so() -> None:
     assert said.wait(10.0)
     manager.close()
     assert manager.idle
+    assert bar_of(manager.snapshot(), manager.now(), Settings()).reason == "no receiver in use: start a drive"

@@ -12,7 +12,8 @@ from support.sessions import driving
 from guidance_app.documents import Settings
 from guidance_app.guidance.turning import Turning, turning_of
 from guidance_app.model import FloatArray, Guidance, Pass, Pose, TurnGuide
-from guidance_app.view.bar import TurnLevel, bar_json, bar_of
+from guidance_app.view.bar import TurnLevel, bar_of
+from guidance_app.view.bar_wire import bar_json
 
 CENTIMETRE = 0.01
 QUARTER = 0.25

@@ -23,7 +23,9 @@ from guidance_app.model import (
     SetWork,
     SkipInitialisation,
 )
-from guidance_app.view.bar import BarState, bar_json, bar_of
+from guidance_app.view.bar import bar_of
+from guidance_app.view.bar_states import BarState
+from guidance_app.view.bar_wire import bar_json
 from guidance_app.view.drive import pass_work_words, pause_press, state_words, work_press
 from guidance_app.view.points import distance_to, known_points, nearest_of
 from guidance_app.view.position import measured_words, measuring_words, roll_zero_view

@@ -12,7 +12,7 @@ from guidance_app.boundary import CheckedField, checked_boundary
 from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.files import Download, link_html
 from guidance_app.console.pages import Page, Pages, Still, press
-from guidance_app.console.registering.atelier import Atelier, area_words
+from guidance_app.console.registering.atelier import Atelier
 from guidance_app.console.registering.by_driving import Driving
 from guidance_app.console.registering.by_file import FromFile
 from guidance_app.console.registering.by_photo import OnPhoto
@@ -27,7 +27,7 @@ from guidance_app.exchange import WRITERS, written_as
 from guidance_app.language import message
 from guidance_app.store import Removed, Store, Stored, StoreError
 from guidance_app.view.camera import ViewMode
-from guidance_app.view.units import distance_text
+from guidance_app.view.units import area_text, distance_text
 
 __all__ = ["Fields"]
 
@@ -206,7 +206,7 @@ class _ListPage(Still):
         document, words, gui, fields = stored.document, self._words, self._gui, self._fields
         later, units = self._hands.later, self._hands.desk().units
         rows = [
-            (words("area"), area_words(self._found.area, units, words)),
+            (words("area"), area_text(self._found.area, units, words)),
             (words("around"), distance_text(self._found.perimeter, units, words)),
             (words("exclusions"), str(len(document.boundary.coordinates) - 1)),
             (words("operations"), ", ".join(self._found.operations) or "–"),

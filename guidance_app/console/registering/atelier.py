@@ -2,17 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import assert_never
 
 from guidance_app.boundary import CheckedField
 from guidance_app.console.desk import Hands
 from guidance_app.console.registering.photo_layer import PhotoLayer
-from guidance_app.documents import FieldDocument, Units
+from guidance_app.documents import FieldDocument
 from guidance_app.geodesy import FieldFrame
-from guidance_app.language import Words
-from guidance_app.view.units import ACRE, ARE, HECTARE, TAN
 
-__all__ = ["Atelier", "area_words"]
+__all__ = ["Atelier"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,18 +36,3 @@ class Atelier:
             number += 1
             name = f"{wanted} {number}"
         return name
-
-
-def area_words(square_metres: float, units: Units, words: Words) -> str:
-    """An area with two decimals, whatever its size: a preview is read, not glanced at."""
-    match units:
-        case Units.IMPERIAL:
-            return f"{words.number(square_metres / ACRE, 2)} ac"
-        case Units.JAPANESE:
-            return f"{words.number(square_metres / ARE, 2)} a"
-        case Units.METRIC:
-            return f"{words.number(square_metres / HECTARE, 2)} ha"
-        case Units.TAN:
-            return f"{words.number(square_metres / TAN, 2)} {words('tan')}"
-        case _:
-            assert_never(units)

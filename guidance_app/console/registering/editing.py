@@ -10,7 +10,7 @@ import viser
 
 from guidance_app.boundary import BoundaryError, frame_of
 from guidance_app.console.desk import Desk
-from guidance_app.console.registering.atelier import Atelier, area_words
+from guidance_app.console.registering.atelier import Atelier
 from guidance_app.console.widgets import Shown, buttons, notice_html, rows_html
 from guidance_app.documents import FieldDocument
 from guidance_app.field_editing import (
@@ -30,6 +30,7 @@ from guidance_app.geodesy import FieldFrame
 from guidance_app.language import message
 from guidance_app.model import FloatArray
 from guidance_app.store import Store, StoreError
+from guidance_app.view.units import area_text
 
 __all__ = ["Editing"]
 
@@ -123,7 +124,7 @@ class Editing:
         sketch.line(LINE, taps, GREEN)
         area = float(_polygon_area(rings))
         rows = [
-            (self._words("area"), area_words(area, desk.units, self._words)),
+            (self._words("area"), area_text(area, desk.units, self._words)),
             (self._words("corners"), str(sum(len(ring) for ring in rings))),
             (self._words("shifts"), str(len(document.shifts))),
         ]

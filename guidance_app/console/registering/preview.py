@@ -7,13 +7,13 @@ import viser
 
 from guidance_app.boundary import CheckedField
 from guidance_app.console.desk import Desk
-from guidance_app.console.registering.atelier import Atelier, area_words
+from guidance_app.console.registering.atelier import Atelier
 from guidance_app.console.widgets import Shown, notice_html, rows_html
 from guidance_app.documents import Units
 from guidance_app.geodesy import FieldFrame
 from guidance_app.store import StoreError
 from guidance_app.view.camera import ViewMode
-from guidance_app.view.units import distance_text
+from guidance_app.view.units import area_text, distance_text
 
 __all__ = ["Preview"]
 
@@ -86,7 +86,7 @@ class Preview:
         words = self._words
         rings = field.document.boundary.coordinates
         rows = [
-            (words("area"), area_words(field.area, units, words)),
+            (words("area"), area_text(field.area, units, words)),
             (words("around"), distance_text(field.perimeter, units, words)),
             (words("corners"), str(len(rings[0]) - 1)),
             (words("from"), self._origin),
