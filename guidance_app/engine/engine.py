@@ -193,10 +193,6 @@ class Engine:
         )
         return self._publish(arrival, {"link": link, **NO_POSE})
 
-    def unused(self) -> Snapshot:
-        """The snapshot that says that no receiver is in use: nothing is driven."""
-        return self._publish(0.0, {"link": LinkState(LinkStatus.UNUSED)})
-
     def _publish(self, arrival: float, changes: Changes) -> Snapshot:
         self._members |= changes
         self._members["sequence"] += 1

@@ -15,7 +15,7 @@ from guidance_app.documents import Job
 from guidance_app.engine import Engine
 from guidance_app.estimation.filter import FilterSettings
 from guidance_app.language import sentence
-from guidance_app.model import RECEIVER, Command, Commanded, Event, Snapshot, SourceDown
+from guidance_app.model import RECEIVER, Command, Commanded, Event, LinkState, LinkStatus, Snapshot, SourceDown
 from guidance_app.recording import RecordedDrive
 from guidance_app.runtime.recorder import Recorder
 from guidance_app.runtime.session import Hearer, Publisher
@@ -31,6 +31,7 @@ IDLE = 0.5
 """Without bytes the engine still looks at the time this often (s)."""
 MICROSECOND_DIGITS = 6
 INTERRUPTED = sentence("the program was stopped here")
+UNUSED = LinkState(LinkStatus.UNUSED)
 TOLD_EVERY = 500
 """Events of a drive that is gone on with between two words about progress."""
 
@@ -148,7 +149,7 @@ class LiveSession:
 
     def _run(self) -> None:
         if self._source is None:
-            self._publish(self._engine.unused())
+            self._publish(self._engine.snapshot)
         while not self._stop.is_set():
             try:
                 event = self._events.get(timeout=self._patience())
@@ -189,10 +190,12 @@ class LiveSession:
         return event if arrival == event.arrival else replace(event, arrival=arrival)
 
     def _publish(self, snapshot: Snapshot) -> None:
-        """With what the driver must know of the recording, which is no part of the drive."""
+        """With what the driver must know and is no part of the drive: of the recording, and that there is no source."""
         self._notice = None if self.recorder is None else self.recorder.notice
         if self._notice is not None:
             snapshot = replace(snapshot, notices=(*snapshot.notices, self._notice))
+        if self._source is None:
+            snapshot = replace(snapshot, link=UNUSED)
         self._publisher.publish(snapshot)
 
 
