@@ -107,8 +107,8 @@ def test_a_big_scene_passes_in_one_piece(start_console: StartConsole) -> None:
     points = np.arange(3 * MEGABYTE, dtype=np.float32).reshape(-1, 3)
     with viser_socket(console) as page:
         PlainScreen.newest.server.scene.add_point_cloud("/cloud", points, colors=(1, 2, 3), precision="float32")
-        biggest = max(len(page.recv(timeout=PATIENCE_S)) for _ in range(3))
-    assert biggest > points.nbytes
+        while len(page.recv(timeout=PATIENCE_S)) <= points.nbytes:
+            pass  # what comes before it is small
 
 
 @pytest.mark.parametrize("offered", [None, ["viser-v0.0.1"], ["other"]])

@@ -136,10 +136,11 @@ class ViserClient:
 
     def control(self, label: str) -> dict[str, Any] | None:
         """The control with this label, or the row of buttons that has one with these words."""
-        for control in self.controls.values():
-            props = control["props"]
-            if props.get("label") == label or any(_says(word, label) for word in props.get("options", ())):
-                return control
+        with self._heard:
+            for control in self.controls.values():
+                props = control["props"]
+                if props.get("label") == label or any(_says(word, label) for word in props.get("options", ())):
+                    return control
         return None
 
     def press(self, words: str) -> None:
@@ -171,9 +172,10 @@ class ViserClient:
 
     def words(self) -> str:
         """Everything that the panels say."""
-        return "\n".join(
-            str(one["props"].get("content", one["props"].get("label", ""))) for one in self.controls.values()
-        )
+        with self._heard:
+            return "\n".join(
+                str(one["props"].get("content", one["props"].get("label", ""))) for one in self.controls.values()
+            )
 
     def close(self) -> None:
         """Leaves."""
