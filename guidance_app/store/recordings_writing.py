@@ -6,6 +6,7 @@ program, also when that is killed.
 
 import contextlib
 import os
+import time
 from pathlib import Path
 
 from guidance_app.language import sentence
@@ -35,6 +36,8 @@ from guidance_app.store.recordings import (
 __all__ = ["RecordingFolder", "is_being_written"]
 
 LOCK = ".writing"
+TRIES, TRY_AGAIN_S = 50, 0.01
+"""Whoever asks whether a recording is being written holds its lock for an instant; a writer waits that long."""
 
 
 class RecordingFolder:
@@ -157,16 +160,28 @@ def is_being_written(folder: Path) -> bool:
 
 
 def _locked(folder: Path) -> int:
+    for _ in range(TRIES):
+        descriptor = _locked_now(folder)
+        if descriptor is not None:
+            return descriptor
+        time.sleep(TRY_AGAIN_S)
+    msg = sentence("the recording {folder} is being written by another program: close that first", folder=folder)
+    raise StoreError(msg)
+
+
+def _locked_now(folder: Path) -> int | None:
+    """The locked file; None while another has it, or has taken it away as it left."""
+    path = folder / LOCK
     try:
-        descriptor = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT, 0o644)
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
     except OSError as error:
         msg = sentence("the recording {folder} cannot be written: {reason}", folder=folder, reason=why(error))
         raise StoreError(msg) from error
-    if not try_lock(descriptor):
-        os.close(descriptor)
-        msg = sentence("the recording {folder} is being written by another program: close that first", folder=folder)
-        raise StoreError(msg)
-    return descriptor
+    with contextlib.suppress(FileNotFoundError):
+        if try_lock(descriptor) and os.path.samestat(os.fstat(descriptor), path.stat()):
+            return descriptor
+    os.close(descriptor)
+    return None
 
 
 def _unpack_events(folder: Path, drive: RecordedDrive) -> None:

@@ -3,6 +3,7 @@
 import gzip
 import json
 import shutil
+import threading
 import zipfile
 from pathlib import Path
 
@@ -99,6 +100,25 @@ def test_a_list_says_what_cannot_be_opened_and_makes_a_missing_summary(recording
     assert broken.summary is None
     assert broken.problem is not None
     assert list_recordings(data / "nowhere") == ()
+
+
+def test_asking_who_writes_never_keeps_a_writer_out(recording: Path) -> None:
+    cut_off(recording, 0.5)
+    stop = threading.Event()
+
+    def ask() -> None:
+        while not stop.is_set():
+            is_being_written(recording)
+
+    asking = threading.Thread(target=ask)
+    asking.start()
+    try:
+        for _ in range(60):
+            folder, _ = RecordingFolder.go_on(recording)
+            folder.close()
+    finally:
+        stop.set()
+        asking.join()
 
 
 def test_a_drive_that_was_cut_off_can_be_gone_on_with(recording: Path) -> None:

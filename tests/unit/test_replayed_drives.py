@@ -1,5 +1,6 @@
 """A recorded drive replayed: the same to the bit, from anywhere, by pass, with an index, and beside another filter."""
 
+import multiprocessing
 import shutil
 import threading
 from collections.abc import Iterator
@@ -227,11 +228,13 @@ def test_parts_of_a_logs_index_close_epochs_as_a_session_does() -> None:
 
 
 def test_closing_ends_the_process_of_an_index(drive: RecordedDrive) -> None:
-    before = threading.active_count()
     session = ReplaySession.of_drive(drive)
     session.make_index(None)
+    indexing = next(one for one in threading.enumerate() if one.name == "index")
     session.close()
-    assert threading.active_count() == before
+    indexing.join(PATIENCE)  # on a busy machine it outlives the seconds that closing waits
+    assert not indexing.is_alive()
+    assert not [one for one in multiprocessing.active_children() if one.name == "index"]
 
 
 # --- beside another filter --------------------------------------------------------------------------------------------
