@@ -30,14 +30,14 @@ from guidance_app.view.units import distance_text, small_area_text
 
 __all__ = ["Asked", "OnField"]
 
-GREEN, RED, ORANGE = (47, 158, 68), (224, 49, 49), (232, 89, 12)
+GREEN, RED, ORANGE, WHITE = (47, 158, 68), (224, 49, 49), (232, 89, 12), (255, 255, 255)
 EDGE, AROUND, OVER, NUMBERS = "edge", "around", "over", "numbers"
 DRIVE_AROUND, PASSABLE, ONE_BY_ONE = message("Drive around"), message("Passable"), message("One by one")
 LISTED = 40
 """Exclusions that have a row of their own; of more the largest ones have."""
 REACH, REACH_BESIDE_EDGES = 0.04, 0.012
 """How far beside an exclusion a finger may tap, as a part of the field's span; less while edges are tapped too."""
-DIGIT = 0.014
+DIGIT = 0.018
 """Width of a painted digit, as a part of the field's span."""
 EDGE_PIXELS, RING_PIXELS = 9.0, 5.0
 
@@ -301,7 +301,7 @@ class OnField:
         closed = [closed_ring(ring) for ring in rings]
         sketch.strokes(AROUND, [one for n, one in enumerate(closed) if n not in now.passable], RED, RING_PIXELS)
         sketch.strokes(OVER, [one for n, one in enumerate(closed) if n in now.passable], GREEN, RING_PIXELS)
-        sketch.strokes(NUMBERS, _numbers(picking) if picking is not None and rings else [], ORANGE, RING_PIXELS)
+        sketch.strokes(NUMBERS, _numbers(picking) if picking is not None and rings else [], WHITE, RING_PIXELS)
         sketch.hear_taps(None if picking is None else self._tap)
 
     def close(self) -> None:
@@ -321,6 +321,7 @@ def _numbers(picking: Picking) -> list[FloatArray]:
         hole = shapely.Polygon(ring)
         middle = hole.representative_point()
         west, south, east, north = hole.bounds
-        beside = 0.0 if min(east - west, north - south) > 4 * size else max(east - west, north - south) / 2 + 2 * size
-        strokes.extend(painted(number + 1, (middle.x + beside, middle.y + beside), (0.0, 1.0), size=size))
+        room = min(east - west, north - south) > 4 * size
+        place = (middle.x, middle.y) if room else (east + 1.5 * size, (south + north) / 2)
+        strokes.extend(painted(number + 1, place, (0.0, 1.0), size=size))
     return strokes

@@ -15,14 +15,13 @@ from guidance_app.view.plan_table import PlanRow
 __all__ = ["RowButtons", "table_html"]
 
 HEADS = (
-    message("Plan"),
-    message("Minutes"),
-    message("Worked"),
-    message("Empty"),
-    message("Turns (tight)"),
-    message("Twice"),
-    message("Missed"),
+    (message("Plan"), ""),
+    (message("Minutes"), ""),
+    (message("Worked"), message("Empty")),
+    (message("Turns"), message("Tight")),
+    (message("Twice"), message("Missed")),
 )
+"""Of each column what its upper and its lower text are: seven numbers side by side do not fit beside a map."""
 
 STYLE = """<style>
 .g-plans{border-collapse:collapse;width:calc(100% - 1.2em);margin:.2em .6em .5em;font-size:.66em;line-height:1.25;
@@ -34,6 +33,7 @@ STYLE = """<style>
  cursor:pointer}
 .g-plans td:first-child label{white-space:normal}
 .g-plans small{color:var(--mantine-color-dimmed);font-size:.9em}
+.g-plans th small{display:block}.g-plans td:not(:first-child){font-size:1.15em}
 .g-plans .g-best b::before{content:"★ ";color:#f08c00}
 .g-plans .g-on{background:rgba(47,158,68,.22);box-shadow:inset .3em 0 #2f9e44}
 .g-plans .g-unfit{color:#e03131;font-weight:600}
@@ -74,7 +74,7 @@ def table_html(rows: Sequence[PlanRow], chosen: int | None, named: Callable[[int
     """The table; empty without rows. ``named`` gives the identifier of a row's button."""
     if not rows:
         return ""
-    head = "".join(f"<th>{html.escape(words(one))}</th>" for one in HEADS)
+    head = "".join(f"<th>{_two(words(upper), words(lower))}</th>" for upper, lower in HEADS)
     lines = "".join(_line(row, named(row.number), words, on=row.number == chosen) for row in rows)
     return f'{STYLE}<table class="g-plans"><tr>{head}</tr>{lines}</table>'
 
@@ -88,6 +88,11 @@ def _line(row: PlanRow, button: str, words: Words, *, on: bool) -> str:
     small = html.escape(row.where if not row.reason else words.say(row.reason))
     first = f"<b>{html.escape(row.title)}</b><small>{small}</small>{unfit}"
     if row.reason:
-        return f'<tr class="{marks}"><td colspan="7"><label>{first}</label></td></tr>'
-    cells = "".join(f'<td><label for="{button}">{html.escape(cell)}</label></td>' for cell in row.cells)
+        return f'<tr class="{marks}"><td colspan="{len(HEADS)}"><label>{first}</label></td></tr>'
+    cells = "".join(f'<td><label for="{button}">{_two(*cell)}</label></td>' for cell in row.cells)
     return f'<tr class="{marks}"><td><label for="{button}">{first}</label></td>{cells}</tr>'
+
+
+def _two(upper: str, lower: str) -> str:
+    """One text over another."""
+    return f"<span>{html.escape(upper)}</span><small>{html.escape(lower)}</small>" if lower else html.escape(upper)

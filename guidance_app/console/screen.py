@@ -57,11 +57,13 @@ class _Client:
         self.failed = False
 
     def again(self, scene: ClientScene) -> None:
-        """Another drive: the scene is new, and at the wheel the panels too."""
+        """Another drive: the scene is new, and at the wheel the panels too. Where things are set up one sees it all."""
         self.scene = scene
         self.sketch.forget()
         if self.place is Place.DRIVE:
             self.place = None
+        else:
+            self.wished_view = ViewMode.WHOLE_FIELD
 
     def take_wishes(self) -> None:
         """Does what fingers have asked for since the last redraw."""

@@ -15,7 +15,7 @@ __all__ = ["AROUND", "PASSABLE", "field_picture"]
 
 WIDE, HIGH, MARGIN = 220.0, 150.0, 8.0
 AROUND, PASSABLE = "#e03131", "#2f9e44"
-SMALLEST = 5.0
+DOT = 8.0
 """Pixels: a smaller exclusion is drawn as a dot of this radius."""
 DIGITS = 12.0
 
@@ -44,13 +44,11 @@ def _exclusion(drawing: Drawing, box: Box, ring: FloatArray, number: int, *, ove
     outline = [box.at(east, north) for east, north in ring]
     middle = shapely.Polygon(ring).representative_point()
     place = box.at(middle.x, middle.y)
-    span = max(max(side) - min(side) for side in zip(*outline, strict=True))
-    if span < 2 * SMALLEST:
-        drawing.circle(place, SMALLEST, fill="none" if over else colour, stroke=colour)
-    elif not over:
-        drawing.shape(outline, fill=colour, opacity="0.8")
-    if span >= 2 * SMALLEST:
+    span = min(max(side) - min(side) for side in zip(*outline, strict=True))
+    if span < 2 * DOT:
+        drawing.circle(place, DOT, fill="var(--mantine-color-body)" if over else colour, stroke=colour)
+    else:
+        if not over:
+            drawing.shape(outline, fill=colour, opacity="0.8")
         drawing.line([*outline, outline[0]], stroke=colour, dashed=over)
-    inside = span >= 2.5 * DIGITS
-    beside = place if inside else (place[0] + SMALLEST + DIGITS / 2, place[1] - SMALLEST)
-    drawing.words(beside, str(number + 1), size=DIGITS, fill="white" if inside and not over else "currentColor")
+    drawing.words(place, str(number + 1), size=DIGITS, fill="currentColor" if over else "white")

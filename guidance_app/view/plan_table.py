@@ -36,7 +36,8 @@ HEADINGS = {
 
 @dataclass(frozen=True, slots=True)
 class PlanRow:
-    """One row. ``cells`` are minutes, metres worked and not worked, turns, worked twice and missed; none of a failure.
+    """One row. Each cell has an upper and a lower text: minutes, the way worked over the empty one, turns over tight
+    ones, what is worked twice over what is missed; a failure has no cells.
 
     ``unfit`` counts turns that do not fit.
     """
@@ -44,7 +45,7 @@ class PlanRow:
     number: int
     title: str
     where: str
-    cells: tuple[str, ...]
+    cells: tuple[tuple[str, str], ...]
     unfit: int = 0
     best: bool = False
     reason: str = ""
@@ -61,14 +62,12 @@ def _row(row: PreviewRow, units: Units, words: Words, *, best: bool) -> PlanRow:
     if row.plan is None:
         return PlanRow(row.number, title, words(HEADINGS[row.request.direction]), (), reason=row.reason)
     costs = row.plan.costs
-    turns = f"{costs.turns}" if not costs.tight_turns else f"{costs.turns} ({costs.tight_turns})"
+    twice = words("{percent} %", percent=words.number(100 * costs.overlap_fraction, 1))
     cells = (
-        words.number(costs.minutes),
-        distance_text(costs.work_m, units, words),
-        distance_text(costs.idle_m, units, words),
-        turns,
-        f"{words.number(100 * costs.overlap_fraction, 1)} %",
-        area_text(costs.missed_m2, units, words),
+        (words.number(costs.minutes), ""),
+        (distance_text(costs.work_m, units, words), distance_text(costs.idle_m, units, words)),
+        (str(costs.turns), str(costs.tight_turns)),
+        (twice, area_text(costs.missed_m2, units, words)),
     )
     return PlanRow(row.number, title, _where(row, words), cells, row.unfit, best)
 

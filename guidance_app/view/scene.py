@@ -18,7 +18,7 @@ from guidance_app.view.bar import TURN_NOW_S, TURN_SOON_S
 from guidance_app.view.bar_states import STALE_AFTER_S
 from guidance_app.view.camera import ViewMode
 from guidance_app.view.colours import Palette, Rgb, vertex_source
-from guidance_app.view.numerals import painted
+from guidance_app.view.numerals import ADVANCE, HEIGHT, painted
 from guidance_app.view.polyline import Segments, along, closed_ring, cut, dashed, point_at, segments, stretched, thinned
 
 __all__ = [
@@ -178,7 +178,9 @@ def number_layout(mode: ViewMode, camera_distance: float) -> NumberLayout:
 def numbers(snapshot: Snapshot, shown: Shown | None, mode: ViewMode, layout: NumberLayout, palette: Palette) -> Lines:
     """The numbers of the passes that matter in this view; at most 48."""
     if mode is ViewMode.WHOLE_FIELD:
-        chosen = _numbers_at_ends(snapshot.passes, snapshot.field_rings, layout)
+        guidance = snapshot.guidance
+        target = None if guidance is None else guidance.target.number
+        chosen = _apart(_numbers_at_ends(snapshot.passes, snapshot.field_rings, layout, target), layout.size)
     elif shown is not None:
         chosen = _numbers_on_lines(snapshot.passes, shown, mode, layout)
     else:
@@ -227,15 +229,17 @@ def _numbers_on_lines(passes: Sequence[Pass], shown: Shown, mode: ViewMode, layo
     return [item for gap, item in placed if gap <= layout.reach]
 
 
-def _numbers_at_ends(passes: Sequence[Pass], rings: Sequence[FloatArray], layout: NumberLayout) -> list[_Placed]:
-    """Outside the field below each pass, every second or third one where they would stand too close."""
+def _numbers_at_ends(
+    passes: Sequence[Pass], rings: Sequence[FloatArray], layout: NumberLayout, target: int | None
+) -> list[_Placed]:
+    """Outside the field below each pass, every second or third one where they would stand too close; target first."""
     straight = [line for line in passes if not line.lap and not line.endless and len(line.points) > 1]
     if not straight:
         return []
     gap = _nearest_gap(straight)
     skip = max(1, math.ceil(3.4 * layout.size / gap), math.ceil(len(straight) / layout.most))
     placed: list[_Placed] = []
-    for line in straight[::skip]:
+    for line in [*(one for one in straight if one.number == target), *straight[::skip]]:
         first, second = (line.points[0], line.points[1])
         last, before = (line.points[-1], line.points[-2])
         end, inner = (first, second) if (first[1], first[0]) <= (last[1], last[0]) else (last, before)
@@ -244,6 +248,20 @@ def _numbers_at_ends(passes: Sequence[Pass], rings: Sequence[FloatArray], layout
         place = end + out * (_way_out(end, out, rings) + 1.6 * layout.size)
         placed.append((line, (float(place[0]), float(place[1])), (0.0, 1.0)))
     return placed
+
+
+def _apart(placed: Sequence[_Placed], size: float) -> list[_Placed]:
+    """Those that can be read: a number that would stand over one before it is left out."""
+    kept: list[_Placed] = []
+    for one in placed:
+        room = ADVANCE * len(str(one[0].number)) + 0.5
+        if all(
+            abs(one[1][0] - other[1][0]) > size * (room + ADVANCE * len(str(other[0].number))) / 2
+            or abs(one[1][1] - other[1][1]) > size * (HEIGHT + 0.5)
+            for other in kept
+        ):
+            kept.append(one)
+    return kept
 
 
 def _way_out(end: FloatArray, out: FloatArray, rings: Sequence[FloatArray]) -> float:

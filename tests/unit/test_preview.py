@@ -49,7 +49,7 @@ def test_the_best_is_the_quickest_that_fits(rows: list[PreviewRow]) -> None:
         assert (best.unfit, best.plan.costs.minutes) <= (row.unfit, row.plan.costs.minutes)
     shown = plan_rows(rows, Units.METRIC, ENGLISH)
     assert [row.number for row in shown if row.best] == [best.number]
-    assert {len(row.cells) for row in shown} == {6}
+    assert {len(row.cells) for row in shown} == {4}
 
 
 def test_directions_that_come_to_the_same_are_planned_once() -> None:

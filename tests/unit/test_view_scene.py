@@ -192,6 +192,30 @@ def test_numbers_of_the_whole_field_stand_outside_of_it() -> None:
     assert not any(field.contains(shapely.Point(stroke[0, :2])) for stroke in lines.points)
 
 
+def test_numbers_of_the_whole_field_do_not_stand_on_each_other() -> None:
+    short = [
+        Pass(number=number, points=np.array([[east, 20.0], [east, 20.0 + number % 3]]), order=number)
+        for number, east in enumerate(np.linspace(40.0, 43.0, 12), start=1)
+    ]
+    snapshot = replace(field_snapshot(), passes=(*straight_passes(6), *short))
+    layout = number_layout(ViewMode.WHOLE_FIELD, 260.0)
+    lines = numbers(snapshot, None, ViewMode.WHOLE_FIELD, layout, DAY)
+    strokes = shapely.union_all([shapely.LineString(one[:, :2]).buffer(0.2 * layout.size) for one in lines.points])
+    heights = [part.bounds[3] - part.bounds[1] for part in shapely.get_parts(strokes)]
+    assert max(heights) < 2.5 * layout.size
+
+
+def test_the_target_has_its_number_in_the_whole_field_whatever_is_left_out() -> None:
+    snapshot = field_snapshot()
+    assert snapshot.guidance is not None
+    colour = vertex_source(DAY.pass_target)
+    for number in (1, 2, 3):
+        target = next(one for one in snapshot.passes if one.number == number)
+        driven = replace(snapshot, guidance=replace(snapshot.guidance, target=target))
+        lines = numbers(driven, None, ViewMode.WHOLE_FIELD, number_layout(ViewMode.WHOLE_FIELD, 2000.0), DAY)
+        assert (lines.colours == colour).all(axis=-1).any()
+
+
 # --- what moves ----------------------------------------------------------------------------------------------------
 
 

@@ -214,9 +214,9 @@ class Plan:
     def _hints(self, shown: Sequence[PlanRow], count: int) -> list[str]:
         """How many plans there are, which is the best so far, and what a press does."""
         best = next((row for row in shown if row.best), None)
-        if best is None:
-            return []
         words = self._words
+        if best is None:
+            return [words("Planning …")] if self._search is not None and self._search.running else []
         return [
             words(
                 "{made} of {count} plans. Best so far: {title}, {where}.",
