@@ -36,10 +36,10 @@ HEADINGS = {
 
 @dataclass(frozen=True, slots=True)
 class PlanRow:
-    """One row. Each cell has an upper and a lower text: minutes, the way worked over the empty one, turns over tight
-    ones, what is worked twice over what is missed; a failure has no cells.
+    """One row, with an upper and a lower text in each cell.
 
-    ``unfit`` counts turns that do not fit.
+    They are minutes, the way worked over the empty one, turns over tight ones, and what is worked twice over what is
+    missed; a failure has no cells. ``unfit`` counts turns that do not fit.
     """
 
     number: int
