@@ -18,7 +18,7 @@ from guidance_app.guidance.planning import PlanError
 from guidance_app.language import sentence
 from guidance_app.model import EndDrive, SessionState, Snapshot
 from guidance_app.runtime import LiveSession, Session, SessionManager, recorded_session, resumed_session
-from guidance_app.sources import SourceError, open_source
+from guidance_app.sources import SourceError, open_receiver
 from guidance_app.sources.ports import ListPorts, found_ports
 from guidance_app.store import Store, StoreError
 from guidance_app.store.recordings import job_of_recording
@@ -66,7 +66,7 @@ class House:
 
     def drive(self, job: Job) -> None:
         """Ends what is driven and drives ``job`` from its receiver's source, recorded. Raises ``SourceError``."""
-        source = open_source(job.receiver.source, job.receiver.attitude_source)
+        source = open_receiver(job)
         self.take(LiveSession(job, source) if self.store is None else recorded_session(self.store.root, job, source))
 
     def use_source(self, uri: str) -> None:
@@ -80,8 +80,7 @@ class House:
 
     def resume(self, found: Resumable, progress: Callable[[float], None] | None = None) -> None:
         """Goes on with a drive that was cut off, from its own receiver. Raises ``StoreError`` or ``SourceError``."""
-        receiver = job_of_recording(found.path).receiver
-        source = open_source(receiver.source, receiver.attitude_source)
+        source = open_receiver(job_of_recording(found.path))
         self.take(resumed_session(found.path, source, progress))
 
     def take(self, session: Session) -> None:

@@ -15,9 +15,10 @@ from guidance_app.language import sentence
 from guidance_app.model import ATTITUDE, RECEIVER, Chunk, SourceDown, SourceUp
 
 if TYPE_CHECKING:
+    from guidance_app.documents import Job
     from guidance_app.sources.ntrip import Caster
 
-__all__ = ["SOURCES", "Opener", "Source", "SourceError", "SourceEvent", "open_source"]
+__all__ = ["SOURCES", "Opener", "Source", "SourceError", "SourceEvent", "open_receiver", "open_source"]
 
 SourceEvent = Chunk | SourceUp | SourceDown
 
@@ -58,13 +59,33 @@ TAKE_CORRECTIONS = frozenset({"serial", "tcp"})
 """Schemes whose other end is the receiver itself, so that what is sent there reaches it."""
 
 
+SIMULATED = "sim"
+SIMULATED_ON_FIELD = "guidance_app.sources.simulated:open_simulated_on"
+"""The one source that wants to know what it is for."""
+
+
+def open_receiver(job: "Job") -> Source:
+    """The source of a job's receiver, with its attitude sensor; a simulated tractor drives that job.
+
+    Raises ``SourceError``.
+    """
+    receiver = job.receiver
+    if receiver.source.partition(":")[0].lower() != SIMULATED:
+        return open_source(receiver.source, receiver.attitude_source)
+    simulated = cast("Callable[[str, Job], Source]", _named(SIMULATED_ON_FIELD))(receiver.source, job)
+    return _beside(_in_time(simulated), receiver.source, receiver.attitude_source)
+
+
 def open_source(uri: str, attitude: str | None = None, caster: "Caster | None" = None) -> Source:
     """The source that ``uri`` names, keeping its time by itself, with what stands beside it.
 
     ``attitude`` names that of an attitude sensor, ``caster`` is where corrections for the receiver come from. Raises
     ``SourceError``.
     """
-    receiver = _open_one(uri)
+    return _beside(_open_one(uri), uri, attitude, caster)
+
+
+def _beside(receiver: Source, uri: str, attitude: str | None, caster: "Caster | None" = None) -> Source:
     if attitude is None and caster is None:
         return receiver
     merged = cast("Callable[[Mapping[str, Source]], Source]", _named("guidance_app.sources.merged:Merged"))
@@ -88,7 +109,10 @@ def _open_one(uri: str) -> Source:
             known=known,
         )
         raise SourceError(msg)
-    source = cast("Opener", _named(SOURCES[scheme]))(uri)
+    return _in_time(cast("Opener", _named(SOURCES[scheme]))(uri))
+
+
+def _in_time(source: Source) -> Source:
     if source.live:
         return source
     return cast("Callable[[Source], Source]", _named("guidance_app.sources.pacing:Paced"))(source)

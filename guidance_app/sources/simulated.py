@@ -1,22 +1,24 @@
-"""``sim:``, a receiver on a tractor that drives the sample field over and over.
+"""``sim:``, a receiver on a tractor that drives the sample field over and over, or the field of a job by its plan.
 
 It is a receiver like any other: what comes out are the bytes of its sentences, an epoch a chunk. Options follow a
 question mark: ``sim:?rate=10&decimals=7&seed=3&speed=8``. Work without an end, it makes each epoch when it is taken.
 """
 
+import math
 import threading
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from urllib.parse import parse_qsl
 
 import numpy as np
+import shapely
 
 from guidance_app.angles import heading_between, yaw_from_heading
 from guidance_app.boundary import frame_of, polygon_in
-from guidance_app.documents import Job
+from guidance_app.documents import Direction, Implement, Job, Method, Tractor
 from guidance_app.geodesy import FieldFrame
-from guidance_app.guidance.planning import plan_operation
+from guidance_app.guidance.planning import PlanError, PlanRequest, plan_operation
 from guidance_app.guidance.room import Room
 from guidance_app.guidance.turn import Leg
 from guidance_app.guidance.turns import Turner
@@ -29,10 +31,20 @@ from guidance_app.simulation.receiver import SENTENCES, ReceiverSettings
 from guidance_app.simulation.sample import sample_job
 from guidance_app.sources import SourceError
 
-__all__ = ["SampleDrive", "SimulatedOptions", "SimulatedSource", "open_simulated", "sample_drive"]
+__all__ = [
+    "SampleDrive",
+    "SimulatedOptions",
+    "SimulatedSource",
+    "Way",
+    "open_simulated",
+    "open_simulated_on",
+    "sample_drive",
+]
 
 KMH = 1 / 3.6
 RATES = (1, 2, 5, 10, 25, 50)
+ROOM = 500.0
+"""Metres around a plan in which a simulated tractor finds any turn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,16 +57,26 @@ class SimulatedOptions:
     speed_kmh: float = 9.0
     sentences: tuple[str, ...] = ("GGA", "RMC", "VTG")
 
-    @property
-    def job_settings(self) -> JobSettings:
-        """The same for the simulation."""
+    def job_settings(self, *, endless: bool) -> JobSettings:
+        """The same for the simulation. What has an end is followed by standing until somebody stops it."""
         return JobSettings(
             driver=DriverSettings(work_speed=self.speed_kmh * KMH),
             receiver=ReceiverSettings(rate=self.rate, decimals=self.decimals, sentences=self.sentences),
             stand_s=5.0,
+            end_s=math.inf,
             start_right=0.5,
-            endless=True,
+            endless=endless,
         )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Way:
+    """What is driven, by which tractor with which implement; ``endless`` when its end leads to its beginning."""
+
+    frame: FieldFrame
+    segments: tuple[Segment, ...]
+    machine: tuple[Tractor, Implement]
+    endless: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +84,8 @@ class SimulatedSource:
     """An endless receiver. It gives its chunks as fast as they are taken; their times are those of the epochs."""
 
     options: SimulatedOptions
+    way: Way | None = None
+    """None: over the sample field."""
     description: str = "simulated receiver on the sample field"
     duration: float | None = None
     live: bool = field(default=False, init=False)
@@ -69,13 +93,12 @@ class SimulatedSource:
     def events(self, stop: threading.Event) -> Iterator[Chunk | SourceUp]:
         """``SourceUp``, then one chunk an epoch until ``stop`` is set."""
         yield SourceUp(0.0, self.description)
-        job = sample_job()
-        drive = sample_drive(job)
+        way = _sample_way() if self.way is None else self.way
         epochs = simulated_epochs(
-            (*drive.passes, *drive.way_back),
-            (job.tractor, job.implement),
-            drive.frame,
-            self.options.job_settings,
+            way.segments,
+            way.machine,
+            way.frame,
+            self.options.job_settings(endless=way.endless),
             np.random.default_rng(self.options.seed),
         )
         for epoch in epochs:
@@ -111,6 +134,61 @@ def open_simulated(uri: str) -> SimulatedSource:
             msg = sentence("'{uri}': {name} is {text!r}, but {rule}", uri=uri, name=name, text=text, rule=option.rule)
             raise SourceError(msg) from error
     return SimulatedSource(SimulatedOptions(**chosen))  # type: ignore[arg-type] # each reader gives its member's type
+
+
+def open_simulated_on(uri: str, job: Job) -> SimulatedSource:
+    """The same on the job's own field, by its plan; one that is worked without a plan is driven to and fro.
+
+    Raises ``SourceError`` too where there is no way on the field.
+    """
+    source = open_simulated(uri)
+    if job.field is None:
+        return source
+    operation = job.operation
+    if operation is not None and operation.method is Method.LINE:
+        operation = operation.model_copy(update={"method": Method.ROUND_TRIP, "direction": Direction.LONGEST_EDGE})
+    frame = frame_of(job.field.boundary)
+    try:
+        request = request_of(job.model_copy(update={"operation": operation}))
+        plan = plan_operation(polygon_in(frame, job.field.boundary), request)
+    except PlanError as error:
+        msg = sentence("the simulated tractor finds no way on this field: {reason}", reason=str(error))
+        raise SourceError(msg) from error
+    segments = tuple(_drivable(plan.segments, request))
+    way = Way(frame, segments, (job.tractor, job.implement), endless=False)
+    said = sentence("simulated receiver on the field '{field}'", field=job.field.name)
+    return replace(source, way=way, description=said)
+
+
+def _drivable(segments: Sequence[Segment], request: PlanRequest) -> Iterator[Segment]:
+    """The plan with a way that a tractor can drive in place of each that does not fit, as if there were room for it."""
+    places = np.concatenate([each.points for each in segments])
+    roomy = shapely.box(*places.min(axis=0), *places.max(axis=0)).buffer(ROOM)
+    turner = Turner(Room(roomy, request.body), request)
+    before: Segment | None = None
+    lacking = False
+    for segment in segments:
+        if not segment.fits:
+            lacking = True
+            continue
+        if lacking and before is not None:
+            yield from _way_between(before, segment, turner)
+        lacking, before = False, segment
+        yield segment
+
+
+def _way_between(before: Segment, after: Segment, turner: Turner) -> Iterator[Segment]:
+    ring = np.vstack([before.points, before.points[:1]]) if before.closed else before.points
+    start, end = _pose(ring[-2], ring[-1], ring[-1]), _pose(after.points[0], after.points[1], after.points[0])
+    turn = turner.turns(start, end)[0]
+    legs = () if turn is None else turn.legs
+    return (_transfer(leg, after.number) for leg in legs)
+
+
+def _sample_way() -> Way:
+    job = sample_job()
+    drive = sample_drive(job)
+    return Way(drive.frame, (*drive.passes, *drive.way_back), (job.tractor, job.implement), endless=True)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

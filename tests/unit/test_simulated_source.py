@@ -2,15 +2,19 @@
 
 import itertools
 import threading
+from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 
+from guidance_app.boundary import frame_of, polygon_in
 from guidance_app.decode.decoder import Decoder
+from guidance_app.documents import FieldDocument, Geometry, Job, Method
 from guidance_app.model import Chunk, Fix, SourceUp
 from guidance_app.simulation.sample import sample_job
-from guidance_app.sources import SourceError, open_source
-from guidance_app.sources.simulated import open_simulated, sample_drive
+from guidance_app.sources import SourceError, open_receiver, open_source
+from guidance_app.sources.simulated import open_simulated, open_simulated_on, sample_drive
 
 
 def chunks_of(uri: str, count: int) -> list[Chunk]:
@@ -60,6 +64,50 @@ def test_it_drives_the_field_over_and_over() -> None:
     assert visits >= 1
     steps = np.hypot(*np.diff(places, axis=0).T)
     assert steps.max() < 4.0  # it never jumps
+
+
+def job_on(field: FieldDocument, **wishes: Any) -> Job:
+    sample = sample_job()
+    assert sample.operation is not None
+    return sample.model_copy(update={"field": field, "operation": sample.operation.model_copy(update=wishes)})
+
+
+@pytest.mark.parametrize("method", [Method.SURROUNDING, Method.LINE])
+def test_the_tractor_of_a_job_drives_its_field_by_its_plan_and_then_stands(method: Method) -> None:
+    ring = [(8.5, 47.5), (8.5009, 47.5), (8.5009, 47.5006), (8.5, 47.5006), (8.5, 47.5)]
+    field = FieldDocument(name="Far from the sample", boundary=Geometry(coordinates=[ring]))
+    source = open_simulated_on("sim:?rate=1&speed=15", job_on(field, method=method, turning_space=None))
+    assert source.description == "simulated receiver on the field 'Far from the sample'"
+    assert source.way is not None
+    chunks = [event for event in itertools.islice(source.events(threading.Event()), 900) if isinstance(event, Chunk)]
+    frame = frame_of(field.boundary)
+    places = [frame.east_north_from_degrees(fix.latitude_deg, fix.longitude_deg) for fix in fixes_of(chunks)]
+    ground = polygon_in(frame, field.boundary)
+    inside = shapely.contains_xy(ground.buffer(1.5), places)
+    assert inside.all()
+    track = shapely.LineString(places)
+    worked = shapely.unary_union([shapely.LineString(one.points) for one in source.way.segments if one.implement_down])
+    assert worked.intersection(track.buffer(1.5)).length > 0.97 * worked.length
+    assert np.ptp(places[-20:], axis=0).max() < 2.0  # it has come to its end and stands
+
+
+def test_a_job_without_a_field_is_driven_on_the_sample() -> None:
+    job = sample_job().model_copy(update={"field": None, "operation": None})
+    assert open_simulated_on("sim:", job) == open_simulated("sim:")
+    assert open_receiver(job).description == "simulated receiver on the sample field"
+
+
+def test_a_field_without_a_way_is_said_before_the_start() -> None:
+    ring = [(8.5, 47.5), (8.50001, 47.5), (8.50001, 47.50001), (8.5, 47.50001), (8.5, 47.5)]
+    job = job_on(FieldDocument(name="Crumb", boundary=Geometry(coordinates=[ring])))
+    with pytest.raises(SourceError, match="the simulated tractor finds no way on this field: the field of"):
+        open_receiver(job)
+
+
+def test_a_job_with_another_receiver_opens_that() -> None:
+    receiver = sample_job().receiver.model_copy(update={"source": "udp://:9999", "attitude_source": "sim:"})
+    source = open_receiver(sample_job().model_copy(update={"receiver": receiver}))
+    assert "9999" in source.description
 
 
 def test_it_stops_when_it_is_told() -> None:
