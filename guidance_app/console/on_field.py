@@ -267,7 +267,7 @@ class OnField:
         now, asked = self._now, self._asked
         one_by_one = asked.exclusions and now.exclusions == ONE_BY_ONE
         wanted = picking is not None and (asked.edge or one_by_one)
-        place = (desk.snapshot.origin_deg, desk.snapshot.generation, desk.snapshot.ground_version)
+        place = (desk.snapshot.origin_deg, self._hands.sketch.scene_number)
         key = (wanted, asked, now.edge_at, one_by_one, frozenset(now.passable), place)
         if key == self._drawn:
             return
