@@ -43,8 +43,13 @@ def field_of(place: SetupPlace) -> FieldDocument:
     return place.store.load(FieldDocument, "Sample field").document
 
 
-def saved(place: SetupPlace, name: str) -> Operation:
+def anew(place: SetupPlace, name: str) -> None:
+    """An empty form with its name: before the map changes, because then the list of fields has a newer entry for one."""
+    place.open_form("New operation")
     place.fill("Name", name)
+
+
+def saved(place: SetupPlace, name: str) -> Operation:
     place.press("Save")
     place.until(lambda: name in place.names(Operation))
     return place.store.load(Operation, name).document
@@ -75,7 +80,7 @@ def choose_in_row(place: SetupPlace, number: int, word: str) -> None:
 
 
 def test_a_tapped_edge_is_drawn_stored_and_planned_along(place: SetupPlace) -> None:
-    place.open_form("New operation")
+    anew(place, "along the edge")
     place.press("Tapped edge")
     place.says("Tap an edge of the field on the map")
     place.until(lambda: place.house.manager.snapshot().field_rings)
@@ -115,7 +120,7 @@ def tap_until(place: SetupPlace, spot: tuple[float, float], node: str) -> None:
 
 
 def test_the_next_edge_is_one_press_away(place: SetupPlace) -> None:
-    place.open_form("New operation")
+    anew(place, "second longest")
     place.press("Tapped edge")
     for _ in range(2):
         place.press("Next edge")
@@ -125,7 +130,7 @@ def test_the_next_edge_is_one_press_away(place: SetupPlace) -> None:
 
 
 def test_a_method_without_passes_asks_for_no_edge(place: SetupPlace) -> None:
-    place.open_form("New operation")
+    anew(place, "in laps")
     place.press("Tapped edge")
     place.says("Tap an edge of the field on the map")
     place.press("Surrounding")
@@ -135,7 +140,7 @@ def test_a_method_without_passes_asks_for_no_edge(place: SetupPlace) -> None:
 
 
 def test_exclusions_are_passable_one_by_one_by_list_and_by_tap(place: SetupPlace) -> None:
-    place.open_form("New operation")
+    anew(place, "over two")
     place.until(lambda: chosen(place, "Drive around"))
     place.press("One by one")
     place.says("Tap an exclusion on the map, or choose below")
@@ -165,7 +170,7 @@ def test_exclusions_are_passable_one_by_one_by_list_and_by_tap(place: SetupPlace
 
 
 def test_all_exclusions_are_passable_at_once_as_before(place: SetupPlace) -> None:
-    place.open_form("New operation")
+    anew(place, "over all")
     place.until(lambda: chosen(place, "Drive around"))
     place.press("Passable")
     place.until(lambda: chosen(place, "Passable"))
@@ -189,7 +194,7 @@ def test_a_field_without_exclusions_asks_nothing_about_them(place: SetupPlace) -
     document = field_of(place)
     geometry = document.boundary.model_copy(update={"coordinates": document.boundary.coordinates[:1]})
     place.store.save(document.model_copy(update={"name": "Bare", "boundary": geometry}))
-    place.open_form("New operation")
+    anew(place, "x")
     place.fill("Field", "Bare")
     place.until(lambda: not place.newest("Exclusions"))
     place.fill("Field", "Sample field")
