@@ -66,7 +66,7 @@ const sayAttributes = (known, { words, language }) => {
 };
 
 const sayWords = (known, style) => {
-  const [, name, detail] = /^(.*?)( \(.*\))?$/.exec(known.n ?? "");
+  const [, name, detail] = /^(.*? ?)(\(.*\))?$/.exec(known.n ?? "");
   setText(passName, name);
   setText(passDetail, detail ?? "");
   const [distance, seconds, level, fits] = known.u ?? ["", "", "far", 1];

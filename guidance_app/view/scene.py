@@ -180,7 +180,7 @@ def numbers(snapshot: Snapshot, shown: Shown | None, mode: ViewMode, layout: Num
     if mode is ViewMode.WHOLE_FIELD:
         guidance = snapshot.guidance
         target = None if guidance is None else guidance.target.number
-        chosen = _apart(_numbers_at_ends(snapshot.passes, snapshot.field_rings, layout, target), layout.size)
+        chosen = _apart(_numbers_at_ends(snapshot.passes, snapshot.field_rings, layout, target), layout, (0.0, 1.0))
     elif shown is not None:
         chosen = _numbers_on_lines(snapshot.passes, shown, mode, layout)
     else:
@@ -226,7 +226,7 @@ def _numbers_on_lines(passes: Sequence[Pass], shown: Shown, mode: ViewMode, layo
         beside = place[0] + right[0] * shift, place[1] + right[1] * shift
         placed.append((gap, (line, beside, top)))
     placed.sort(key=lambda item: item[0])
-    return [item for gap, item in placed if gap <= layout.reach]
+    return _apart([item for gap, item in placed if gap <= layout.reach], layout, forward)
 
 
 def _numbers_at_ends(
@@ -250,17 +250,18 @@ def _numbers_at_ends(
     return placed
 
 
-def _apart(placed: Sequence[_Placed], size: float) -> list[_Placed]:
-    """Those that can be read: a number that would stand over one before it is left out."""
+def _apart(placed: Sequence[_Placed], layout: NumberLayout, up: tuple[float, float]) -> list[_Placed]:
+    """Those that can be read: a number that would stand over one before it is left out. ``up`` is that of the view."""
     kept: list[_Placed] = []
+    boxes: list[tuple[float, float, float]] = []
+    tall = layout.size * (HEIGHT * layout.stretch + 0.5)
     for one in placed:
-        room = ADVANCE * len(str(one[0].number)) + 0.5
-        if all(
-            abs(one[1][0] - other[1][0]) > size * (room + ADVANCE * len(str(other[0].number))) / 2
-            or abs(one[1][1] - other[1][1]) > size * (HEIGHT + 0.5)
-            for other in kept
-        ):
+        line, (east, north), _ = one
+        across, ahead = east * up[1] - north * up[0], east * up[0] + north * up[1]
+        half = layout.size * (ADVANCE * len(str(line.number)) + 0.25) / 2
+        if all(abs(across - x) > half + wide or abs(ahead - y) > tall for x, y, wide in boxes):
             kept.append(one)
+            boxes.append((across, ahead, half))
     return kept
 
 

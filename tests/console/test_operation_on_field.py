@@ -44,7 +44,7 @@ def field_of(place: SetupPlace) -> FieldDocument:
 
 
 def anew(place: SetupPlace, name: str) -> None:
-    """An empty form with its name: before the map changes, because then the list of fields has a newer entry for one."""
+    """An empty form with its name: before the map changes, for then the list of fields has a newer entry for one."""
     place.open_form("New operation")
     place.fill("Name", name)
 
