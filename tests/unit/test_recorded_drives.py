@@ -2,9 +2,12 @@
 
 import gzip
 import json
+import os
 import shutil
-import threading
 import zipfile
+from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import TimeoutError as FuturesTimeoutError
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -15,9 +18,10 @@ from guidance_app.model import Chunk, LineHere, Nudge, OffsetKind, SetLookAhead,
 from guidance_app.runtime import LiveSession
 from guidance_app.runtime.recorder import Recorder, new_recording
 from guidance_app.store import StoreError
+from guidance_app.store.files import try_lock
 from guidance_app.store.recordings import EVENTS, PACKED, SESSION, SUMMARY, is_recording, open_recording
 from guidance_app.store.recordings_list import finish_recording, list_recordings, resumable
-from guidance_app.store.recordings_writing import RecordingFolder, is_being_written
+from guidance_app.store.recordings_writing import LOCK, RecordingFolder, is_being_written
 
 MICROSECOND = 1e-6
 
@@ -102,23 +106,16 @@ def test_a_list_says_what_cannot_be_opened_and_makes_a_missing_summary(recording
     assert list_recordings(data / "nowhere") == ()
 
 
-def test_asking_who_writes_never_keeps_a_writer_out(recording: Path) -> None:
-    cut_off(recording, 0.5)
-    stop = threading.Event()
-
-    def ask() -> None:
-        while not stop.is_set():
-            is_being_written(recording)
-
-    asking = threading.Thread(target=ask)
-    asking.start()
-    try:
-        for _ in range(60):
-            folder, _ = RecordingFolder.go_on(recording)
-            folder.close()
-    finally:
-        stop.set()
-        asking.join()
+def test_whoever_asks_who_writes_keeps_no_writer_out(recording: Path) -> None:
+    for _ in range(20):
+        asking = os.open(recording / LOCK, os.O_RDWR | os.O_CREAT)  # as a power cut leaves it
+        assert try_lock(asking)
+        with ThreadPoolExecutor(1) as pool:
+            writer = pool.submit(RecordingFolder, recording)
+            with suppress(FuturesTimeoutError):
+                writer.result(timeout=0.02)
+            os.close(asking)
+            writer.result().close()
 
 
 def test_a_drive_that_was_cut_off_can_be_gone_on_with(recording: Path) -> None:
