@@ -11,13 +11,7 @@ import itertools
 
 import numpy as np
 
-from guidance_app.guidance.manoeuvres import (
-    Manoeuvres,
-    backed,
-    join,
-    stacked,
-    with_straights,
-)
+from guidance_app.guidance.manoeuvres import WORDS, Manoeuvres, backed, join, stacked, with_straights
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.guidance.room import Room
 from guidance_app.guidance.turn import Turn, turns_along
@@ -31,10 +25,10 @@ RADIUS_MARGIN = 1.0055
 TRIES = 8
 """Candidates of which the missing metres are measured where none fits, shortest first."""
 
-AT_ONCE, MOST_TRIED = 48, 480
+AT_ONCE, MOST_TRIED = 160, 480
 """Candidates checked at a time, and in all, when any of many ends will do."""
 
-MOST_AT_ONCE = 16
+MOST_AT_ONCE = 64
 """Candidates of one pair that are checked at a time at most."""
 
 BACKING = (0.5, 1.0, 1.75, 3.0)
@@ -87,7 +81,7 @@ class Turner:
         """Candidates from a worked pass's end to each of many poses (M, 3) on the way."""
         many = np.tile(start, (len(ends), 1))
         words = self._join(_ahead(many, self.out), ends)
-        return self._framed(words, 0.0, 0.0, into=0.0)
+        return self._framed(words, 0.0)
 
     def off(self, starts: FloatArray, end: FloatArray) -> Manoeuvres:
         """Candidates from each of many poses (M, 3) on the way to the start of a pass."""
@@ -127,7 +121,7 @@ class Turner:
 
     def _plain(self, starts: FloatArray, ends: FloatArray) -> Manoeuvres:
         words = self._join(_ahead(starts, self.out), _ahead(ends, -self.into))
-        return self._framed(words, 0.0, 0.0)
+        return self._framed(words, self.into)
 
     def _join(self, starts: FloatArray, ends: FloatArray) -> Manoeuvres:
         """Words without those that back up farther than a driver would."""
@@ -138,26 +132,25 @@ class Turner:
     def _backing(self, starts: FloatArray, ends: FloatArray) -> Manoeuvres:
         """Backing up before the manoeuvre, or to the next pass's start after it, or both."""
         metres = [0.0, *(part * self.radius for part in BACKING)]
-        ways = []
-        for first, last in itertools.product(metres, metres):
-            if first or last:
-                begin = _ahead(starts, self.out - first)
-                end = _ahead(ends, last if last else -self.into)
-                ways.append(self._framed(self._join(begin, end), first, last))
-        return stacked(ways, len(starts))
+        both = np.array([(first, last) for first, last in itertools.product(metres, metres) if first or last])
+        first, last = np.tile(both, (len(starts), 1)).T
+        begin = _ahead(np.repeat(starts, len(both), axis=0), self.out - first)
+        end = _ahead(np.repeat(ends, len(both), axis=0), np.where(last > 0, last, -self.into))
+        words = self._join(begin, end)
+        first, last = np.repeat(first, WORDS), np.repeat(last, WORDS)
+        before = np.column_stack([np.full(len(first), self.out), -first])
+        after = np.column_stack([np.where(last > 0, 0.0, self.into), -last])
+        return with_straights(words, before, after)
 
     def _backward(self, starts: FloatArray, ends: FloatArray) -> Manoeuvres:
         words = backed(_ahead(starts, self.out), ends, self.radius)
         bent = np.abs(words.lengths * words.turns).sum(axis=1)
         words.lengths[bent > MOST_BENT_BACK * self.radius] = np.nan
-        return self._framed(words, 0.0, 0.0, into=0.0)
+        return self._framed(words, 0.0)
 
-    def _framed(self, words: Manoeuvres, first: float, last: float, into: float | None = None) -> Manoeuvres:
-        many = len(words.start)
-        into = self.into if into is None else into
-        before = np.tile([self.out, -first], (many, 1))
-        after = np.tile([0.0 if last else into, -last], (many, 1))
-        return with_straights(words, before, after)
+    def _framed(self, words: Manoeuvres, into: float) -> Manoeuvres:
+        rows = len(words.start)
+        return with_straights(words, np.tile([self.out, 0.0], (rows, 1)), np.tile([into, 0.0], (rows, 1)))
 
     def _shortest(self, moves: Manoeuvres, pairs: int) -> list[Turn | None]:
         """Each pair's shortest candidate that fits; ever more candidates are checked at a time."""
@@ -180,7 +173,8 @@ class Turner:
         return found
 
 
-def _ahead(poses: FloatArray, metres: float) -> FloatArray:
+def _ahead(poses: FloatArray, metres: float | FloatArray) -> FloatArray:
+    """Poses (M, 3) so many metres ahead: the same for all, or (M,)."""
     moved = poses.copy()
     moved[:, 0] += metres * np.cos(poses[:, 2])
     moved[:, 1] += metres * np.sin(poses[:, 2])

@@ -15,7 +15,7 @@ from shapely import MultiLineString, Polygon
 from guidance_app.guidance.blunting import eased_stroke
 from guidance_app.guidance.clearance import free_ground, parts_of
 from guidance_app.guidance.corridor import Corridor
-from guidance_app.guidance.manoeuvres import IntArray, Manoeuvres
+from guidance_app.guidance.manoeuvres import WORDS, IntArray, Manoeuvres
 from guidance_app.guidance.ring import Ring, Stroke
 from guidance_app.guidance.room import BoolArray
 from guidance_app.guidance.turn import Leg, Turn, leg_of, turns_along
@@ -36,13 +36,16 @@ CROP = 1.0
 EASE = 1.05
 """Turning radii of the circles round which a taut string bends."""
 
+SIMPLE = 0.03
+"""Metres to which the ground of taut strings is smoothed: fewer corners, fewer triangles."""
+
 MARGIN = 0.25
 """Metres from the boundary at which a way that does not fit is drawn."""
 
-BATCH = 12
+BATCH = 40
 """Ways of joining and of leaving that are checked at a time, those that promise most first."""
 
-ROUNDS = 25
+ROUNDS = 8
 """Batches after which a transfer counts as one that does not fit."""
 
 
@@ -105,17 +108,16 @@ class Ways:
             free = free_ground(ground, self._turner.room.half_width, EASE * radius)
             inner = parts_of(ground.buffer(-MARGIN))
             whole = inner[0] if len(inner) == 1 else ground
-            self._corridors = ([Corridor(part) for part in parts_of(free)], Corridor(whole))
+            simple = shapely.simplify(free, SIMPLE)
+            self._corridors = ([Corridor(part) for part in parts_of(simple)], Corridor(whole))
         return self._corridors
 
     def _along(self, tracks: "_Tracks", start: FloatArray, end: FloatArray, limit: float) -> Turn | None:
         """The shortest way on one of these lines that fits and costs less than ``limit``."""
-        reach = REACH * self._turner.radius
-        joins, leaves = tracks.near(start, reach), tracks.near(end, reach)
+        joins, onto = tracks.joining(start)
+        leaves, off = tracks.leaving(end)
         if not len(joins) or not len(leaves):
             return None
-        onto = _Side(self._turner, self._turner.onto(start, tracks.poses[joins]), len(joins))
-        off = _Side(self._turner, self._turner.off(tracks.poses[leaves], end), len(leaves))
         between = tracks.between(joins, leaves)
         for _ in range(ROUNDS):
             onto.check(between + off.promised[None, :], limit)
@@ -141,8 +143,7 @@ class _Side:
     def __init__(self, turner: Turner, moves: Manoeuvres, places: int) -> None:
         self._turner = turner
         self._moves = moves
-        self._open = moves.total.reshape(places, -1)
-        self._words = self._open.shape[1]
+        self._open = moves.total.reshape(places, WORDS)
         self._fitting = np.zeros(places, dtype=int)
         self.certain = np.full(places, np.inf)
         self._promise()
@@ -156,7 +157,7 @@ class _Side:
         if not len(places):
             return
         words = self._open[places].argmin(axis=1)
-        rows = places * self._words + words
+        rows = places * WORDS + words
         fits = self._turner.room.fits(self._moves.take(rows))
         good = places[fits]
         self.certain[good] = self._open[good, words[fits]]
@@ -176,6 +177,9 @@ class _Tracks:
     """Lines to follow, each in one direction, as one table of poses (M, 3)."""
 
     def __init__(self, turner: Turner, lines: Sequence[Ring | Stroke]) -> None:
+        self._turner = turner
+        self._joining: dict[bytes, tuple[IntArray, _Side]] = {}
+        self._leaving: dict[bytes, tuple[IntArray, _Side]] = {}
         self._rings = lines
         along = [ring.places(TRACK_STEP) for ring in self._rings]
         self._along = np.concatenate([*along, np.zeros(0)])
@@ -186,10 +190,26 @@ class _Tracks:
         self._blocked = np.concatenate([[0], np.cumsum(~self._free)])
         self._period = np.array([ring.period for ring in self._rings])
 
-    def near(self, pose: FloatArray, reach: float) -> IntArray:
+    def joining(self, start: FloatArray) -> tuple[IntArray, _Side]:
+        """Rows of poses within reach of a worked pass's end, and the candidates that lead there; kept between calls."""
+        key = start.tobytes()
+        if key not in self._joining:
+            rows = self._near(start)
+            self._joining[key] = rows, _Side(self._turner, self._turner.onto(start, self.poses[rows]), len(rows))
+        return self._joining[key]
+
+    def leaving(self, end: FloatArray) -> tuple[IntArray, _Side]:
+        """The same towards the start of a pass."""
+        key = end.tobytes()
+        if key not in self._leaving:
+            rows = self._near(end)
+            self._leaving[key] = rows, _Side(self._turner, self._turner.off(self.poses[rows], end), len(rows))
+        return self._leaving[key]
+
+    def _near(self, pose: FloatArray) -> IntArray:
         """Rows of poses within reach at which the machine fits."""
         apart = np.hypot(*(self.poses[:, :2] - pose[:2]).T)
-        return np.flatnonzero((apart < reach) & self._free)
+        return np.flatnonzero((apart < REACH * self._turner.radius) & self._free)
 
     def between(self, joins: IntArray, leaves: IntArray) -> FloatArray:
         """Metres along the line (J, L) from each row to each; infinite on another line or where the way is blocked."""
