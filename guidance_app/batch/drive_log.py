@@ -1,7 +1,8 @@
 """The columns of a drive: every input of it through the engine, one row a fix, as fast as the machine can."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 
+from guidance_app.decoding_beside import DecodedEvents
 from guidance_app.documents import Job
 from guidance_app.engine import Engine
 from guidance_app.estimation.filter import FilterSettings
@@ -26,20 +27,17 @@ def gathered(
     settings: FilterSettings | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> DriveGathering:
-    """Every row of these events, and the last snapshot. ``progress`` hears from 0 to 1."""
+    """Every row of these events, and the last snapshot. ``progress`` hears from 0 to 1.
+
+    Those of a long drive are decoded by a process beside.
+    """
     engine = Engine(job, filter_name=filter_name, settings=settings)
     gathering = DriveGathering()
-    for event in _told(events, progress):
-        for snapshot in engine.steps(event):
-            gathering.take(snapshot)
-    return gathering
-
-
-def _told(events: Sequence[Event], progress: Callable[[float], None] | None) -> Iterable[Event]:
-    count = max(len(events), 1)
-    for number, event in enumerate(events):
+    for number, (event, heard) in enumerate(DecodedEvents(events)):
         if progress is not None and number % TELL_EVERY == 0:
-            progress(number / count)
-        yield event
+            progress(number / len(events))
+        for snapshot in engine.steps(event, heard):
+            gathering.take(snapshot)
     if progress is not None:
         progress(1.0)
+    return gathering

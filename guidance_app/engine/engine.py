@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from dataclasses import fields, replace
 from typing import Any, assert_never
 
-from guidance_app.decode.decoder import Decoder
 from guidance_app.documents import Job, Tractor
 from guidance_app.engine import position, roll_drives
 from guidance_app.engine.attitudes import Attitudes
+from guidance_app.engine.hearing import Heard, Hearing
 from guidance_app.engine.link import after_chunk, after_down, after_up, changed_link, link_of
 from guidance_app.engine.position import Measuring, Position
 from guidance_app.engine.roll_drives import RollDrives
@@ -46,7 +46,6 @@ from guidance_app.model import (
     Measurement,
     NextRollZeroDrive,
     NoFix,
-    Observation,
     OffsetKind,
     OnTheMark,
     Pause,
@@ -93,7 +92,7 @@ class Engine:
         receiver = job.receiver
         self._filter_name = filter_name or (receiver.filter if receiver.filter_on else OFF)
         self._filter = estimator or make_filter(self._filter_name, settings)
-        self._decoders: dict[str, Decoder] = {}
+        self._hearing = Hearing()
         self._attitudes = Attitudes()
         self._implement = ImplementPoint(job.implement)
         self._predictor = Predictor(settings)
@@ -129,17 +128,13 @@ class Engine:
     @property
     def close_epoch(self) -> Chunk | None:
         """The empty chunk that closes the half-received epoch which waits longest, at ``wake_at`` or later."""
-        waiting = [(one.wake_at, link) for link, one in self._decoders.items() if one.wake_at is not None]
-        if not waiting:
-            return None
-        at, link = min(waiting)
-        return Chunk(at, b"", link)
+        return self._hearing.close_epoch
 
     def fork(self, generation: int | None = None) -> "Engine":
         """An independent copy; with a new ``generation`` its readers see that time has jumped."""
         other = copy.copy(self)
         vars(other).update(
-            _decoders={link: one.fork() for link, one in self._decoders.items()},
+            _hearing=self._hearing.fork(),
             _attitudes=self._attitudes.fork(),
             _filter=self._filter.fork(),
             _implement=self._implement.fork(),
@@ -151,28 +146,33 @@ class Engine:
             other._publish(self._snapshot.arrival, {"generation": generation})  # noqa: SLF001 - its own class
         return other
 
+    def take_hearing(self, hearing: Hearing) -> None:
+        """Goes on listening from here, after steps that were given what was heard."""
+        self._hearing = hearing
+
     def step(self, event: Event) -> Snapshot:
         """The snapshot after one more event."""
         for _ in self.steps(event):
             pass
         return self._snapshot
 
-    def steps(self, event: Event) -> Iterator[Snapshot]:
-        """The snapshots after each fix that the event closed, or one when it closed none."""
+    def steps(self, event: Event, heard: Heard | None = None) -> Iterator[Snapshot]:
+        """The snapshots after each fix that the event closed, or one when it closed none.
+
+        ``heard`` is what ``Hearing`` says of the event, where that was found out beforehand; then of every one.
+        """
         match event:
             case Chunk():
-                decoder = self._decoder(event.link)
-                yield from self._observe(event, decoder.feed(event), decoder)
+                yield from self._observe(event, heard or self._hearing.hear(event))
             case Commanded():
                 yield self._publish(event.arrival, self._command(event.arrival, event.command))
             case SourceUp():
                 state = after_up(link_of(self._snapshot, event.link), event)
                 yield self._publish(event.arrival, changed_link(event.link, self._snapshot.links_beside, state))
             case SourceDown():
-                decoder = self._decoder(event.link)
-                closed = decoder.finish(event.arrival)
-                if closed:
-                    yield from self._observe(Chunk(event.arrival, b"", event.link), closed, decoder)
+                last = heard or self._hearing.hear(event)
+                if last.closed:
+                    yield from self._observe(Chunk(event.arrival, b"", event.link), last)
                 state = after_down(link_of(self._snapshot, event.link), event)
                 yield self._publish(event.arrival, changed_link(event.link, self._snapshot.links_beside, state))
             case _:
@@ -200,19 +200,13 @@ class Engine:
         self._snapshot = Snapshot(**self._members)
         return self._snapshot
 
-    def _decoder(self, link: str) -> Decoder:
-        if link not in self._decoders:
-            self._decoders[link] = Decoder(link)
-        return self._decoders[link]
-
-    def _observe(self, chunk: Chunk, closed: tuple[Observation, ...], decoder: Decoder) -> Iterator[Snapshot]:
-        counts = (decoder.sentences, sum(decoder.rejected.values()), sum(decoder.kinds.values()))
+    def _observe(self, chunk: Chunk, heard: Heard) -> Iterator[Snapshot]:
         before = self._snapshot
-        state = after_chunk(link_of(before, chunk.link), chunk, closed, counts)
+        state = after_chunk(link_of(before, chunk.link), chunk, heard.closed, heard.counts)
         changes: Changes = changed_link(chunk.link, before.links_beside, state)
-        if decoder.sky is not before.sky and chunk.link == RECEIVER:
-            changes["sky"] = decoder.sky
-        for one in closed:
+        if heard.sky is not before.sky and chunk.link == RECEIVER:
+            changes["sky"] = heard.sky
+        for one in heard.closed:
             match one:
                 case Fix():
                     self._fix(one, changes)

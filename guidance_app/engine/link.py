@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from guidance_app.engine.hearing import Counts
 from guidance_app.language import message, sentence
 from guidance_app.model import (
     CORRECTIONS,
@@ -24,9 +25,6 @@ __all__ = ["after_chunk", "after_down", "after_up", "changed_link", "link_of"]
 
 
 SILENT = frozenset({LinkStatus.CONNECTING, LinkStatus.NO_DATA, LinkStatus.NO_SENTENCE, LinkStatus.DOWN})
-
-Counts = tuple[int, int, int]
-"""What a decoder has counted: sentences seen, lines and epochs rejected, sentences read."""
 
 
 def link_of(snapshot: Snapshot, link: str) -> LinkState:

@@ -36,8 +36,13 @@ def made_quickly(record: type[Record]) -> type[Record]:
     made = known["__init__"]
     made.__qualname__ = f"{record.__qualname__}.__init__"
     made.__annotations__ = record.__init__.__annotations__
+    record.__reduce__ = _reduced  # type: ignore[method-assign,assignment]  # copies and pickles are made quickly too
     record.__init__ = made  # type: ignore[method-assign]  # the purpose
     return record
+
+
+def _reduced(record: object) -> tuple[type, tuple[object, ...]]:
+    return type(record), tuple([getattr(record, name) for name in type(record).__slots__])  # type: ignore[attr-defined]
 
 
 def _default(member: Field[object]) -> object:

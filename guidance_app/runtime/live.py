@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
+from guidance_app.decoding_beside import DecodedEvents
 from guidance_app.documents import Job
 from guidance_app.engine import Engine
 from guidance_app.estimation.filter import FilterSettings
@@ -120,11 +121,15 @@ class LiveSession:
         return self._publisher.subscribe(hear)
 
     def _take_again(self, drive: RecordedDrive, progress: Callable[[float], None] | None) -> None:
-        for number, event in enumerate(drive.events):
+        decoded = DecodedEvents(drive.events)
+        look_at = None if self.recorder is None else self.recorder.look_at
+        for number, (event, heard) in enumerate(decoded):
             self._links.setdefault(_link_of(event))
-            stepped(self._engine, event, None if self.recorder is None else self.recorder.look_at)
+            stepped(self._engine, event, look_at, heard)
             if progress is not None and number % TOLD_EVERY == 0:
                 progress(number / len(drive.events))
+        if decoded.hearing is not None:
+            self._engine.take_hearing(decoded.hearing)
         self._begin = self._last = drive.duration
         for link in self._links:
             self._step(SourceDown(self._begin, INTERRUPTED, link))

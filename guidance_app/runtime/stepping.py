@@ -4,6 +4,7 @@ import logging
 from collections.abc import Callable
 
 from guidance_app.engine import Engine
+from guidance_app.engine.hearing import Heard
 from guidance_app.model import Event, Snapshot
 
 __all__ = ["stepped"]
@@ -11,10 +12,15 @@ __all__ = ["stepped"]
 log = logging.getLogger(__name__)
 
 
-def stepped(engine: Engine, event: Event, hear: Callable[[Snapshot], None] | None = None) -> Snapshot:
-    """The snapshot after one more event; ``hear`` gets each of them, when it closed several fixes. Never raises."""
+def stepped(
+    engine: Engine, event: Event, hear: Callable[[Snapshot], None] | None = None, heard: Heard | None = None
+) -> Snapshot:
+    """The snapshot after one more event; ``hear`` gets each of them, when it closed several fixes. Never raises.
+
+    ``heard`` as in ``Engine.steps``.
+    """
     try:
-        for snapshot in engine.steps(event):
+        for snapshot in engine.steps(event, heard):
             if hear is not None:
                 hear(snapshot)
     except Exception as error:

@@ -14,6 +14,7 @@ import pytest
 from support.drives import a_job, path_chunks, up_and_down
 from support.recordings import Heard, Script, assert_same, driven_live, is_over, taken_again
 
+from guidance_app import decoding_beside
 from guidance_app.model import Chunk, LineHere, Nudge, OffsetKind, SetLookAhead, SetWork, TakePass
 from guidance_app.runtime import LiveSession
 from guidance_app.runtime.recorder import Recorder, new_recording
@@ -118,7 +119,11 @@ def test_whoever_asks_who_writes_keeps_no_writer_out(recording: Path) -> None:
             writer.result().close()
 
 
-def test_a_drive_that_was_cut_off_can_be_gone_on_with(recording: Path) -> None:
+@pytest.mark.parametrize("long", [1, decoding_beside.LONG])
+def test_a_drive_that_was_cut_off_can_be_gone_on_with(
+    recording: Path, long: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(decoding_beside, "LONG", long)
     data = cut_off(recording, 0.6123).parent.parent
     drive = open_recording(recording)
     assert drive.truncated is not None
