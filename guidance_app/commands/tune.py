@@ -31,7 +31,11 @@ from guidance_app.evaluation.tuning import (
     random_search,
     settings_from,
 )
-from guidance_app.model import FloatArray
+from guidance_app.model import RECEIVER, Chunk, FloatArray
+from guidance_app.sources import SourceError
+from guidance_app.sources.file import load_log
+from guidance_app.store import StoreError
+from guidance_app.store.recordings import is_recording, open_recording
 
 __all__ = ["add_parser", "run"]
 
@@ -50,7 +54,14 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
             " checked by cross-validation. Ctrl-C keeps the best so far."
         ),
     )
-    parser.add_argument("--log", nargs="+", type=Path, action="extend", metavar="LOG", help="NMEA recordings of yours")
+    parser.add_argument(
+        "--log",
+        nargs="+",
+        type=Path,
+        action="extend",
+        metavar="LOG",
+        help="recordings of yours: NMEA logs, plain or .gz; recordings' folders or zips",
+    )
     parser.add_argument(
         "--straight-only",
         action="store_true",
@@ -78,7 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Tunes, says what was found, and writes it. 0 also when Ctrl-C ended it early with a result."""
     try:
         return _tune(arguments)
-    except (TuningError, OptimiserMissingError, ClusterError) as error:
+    except (TuningError, OptimiserMissingError, ClusterError, SourceError, StoreError) as error:
         print(f"tune: {error}", file=sys.stderr)
         return 2
 
@@ -128,21 +139,33 @@ def _tune_models(arguments: argparse.Namespace) -> int:
 
 def _objective(logs: Sequence[Path], *, straight_only: bool) -> Objective:
     if logs:
-        return recorded_objective([_recording(path) for path in logs])
+        return recorded_objective([_serving(path) for path in logs])
     return straight_objective() if straight_only else mixed_objective()
 
 
-def _recording(path: Path) -> Recording:
-    """The fixes of a log in a frame of its own."""
-    try:
-        fixes = fixes_of(path.read_bytes())
-    except OSError as error:
-        msg = f"cannot read {path}: {error.strerror}"
-        raise TuningError(msg) from error
+def _serving(path: Path) -> Recording:
+    """The fixes of a log or recording in a frame of its own. One that tells nothing of driving is refused by name."""
+    fixes = fixes_of(_received(path))
     if not fixes:
         msg = f"{path} holds no fix"
         raise TuningError(msg)
-    return recording_from_fixes(fixes, frame_of(fixes))
+    recording = recording_from_fixes(fixes, frame_of(fixes))
+    try:
+        recorded_objective([recording])
+    except TuningError as error:
+        msg = f"{path}: {error}"
+        raise TuningError(msg) from error
+    return recording
+
+
+def _received(path: Path) -> bytes:
+    """What the receiver sent."""
+    if not is_recording(path):
+        return b"".join(chunk.data for chunk in load_log(path).chunks)
+    drive = open_recording(path)
+    if drive.truncated is not None:
+        print(f"tune: {path}: {drive.truncated}", file=sys.stderr)
+    return b"".join(one.data for one in drive.events if isinstance(one, Chunk) and one.link == RECEIVER)
 
 
 def _search(arguments: argparse.Namespace) -> Search:

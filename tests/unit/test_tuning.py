@@ -11,7 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.drives import path_chunks, up_and_down
+from support.recordings import driven_live
 
+from guidance_app.cli import main
 from guidance_app.estimation.filter import FilterSettings, QuantisationSettings
 from guidance_app.estimation.filters import make_filter
 from guidance_app.evaluation.cluster import ClusterError, cluster_search
@@ -281,7 +284,7 @@ def test_the_result_is_written_and_said(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        (("--log", "nowhere.nmea"), "cannot read nowhere.nmea"),
+        (("--log", "nowhere.nmea"), "There is no file nowhere.nmea"),
         (("--scheduler", "tcp://127.0.0.1:9"), "is for --method random"),
     ],
 )
@@ -290,3 +293,26 @@ def test_what_cannot_be_is_said_in_one_line(arguments: tuple[str, ...], sentence
     assert result.returncode == 2
     assert sentence in result.stderr
     assert len(result.stderr.strip().splitlines()) == 1
+
+
+def test_a_recording_of_the_console_serves_as_well_as_its_log(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    chunks = list(path_chunks(up_and_down()))
+    log = tmp_path / "drive.nmea"
+    log.write_bytes(b"".join(chunk.data for chunk in chunks))
+    recording = driven_live(tmp_path / "data", chunks)[0]
+    said = []
+    for path in (log, recording):
+        assert main(["tune", "--log", str(path), "--method", "random", "--samples", "500", "--processes", "1"]) == 0
+        said.append(capsys.readouterr().out)
+    assert "one second ahead, your recordings" in said[0]
+    assert said[0] == said[1]
+
+
+def test_a_log_that_tells_nothing_is_named_beside_one_that_does(tmp_path: Path, capsys) -> None:
+    good, short = tmp_path / "good.nmea", tmp_path / "short.nmea"
+    good.write_bytes(b"".join(chunk.data for chunk in path_chunks(up_and_down())))
+    short.write_bytes(good.read_bytes()[:4000])
+    assert main(["tune", "--log", str(good), str(short)]) == 2
+    assert f"{short}: the recording is too short" in capsys.readouterr().err
