@@ -19,7 +19,7 @@ from guidance_app.simulation.receiver import Antenna, ReceiverSettings, Simulate
 from guidance_app.simulation.route import Stretch, stretches_of
 from guidance_app.simulation.vehicle import TractorModel, VehicleState, model_for, moved, rear_axle, standing_at
 
-__all__ = ["JobSettings", "LossOfFix", "SimulatedEpoch", "simulated_epochs"]
+__all__ = ["START", "JobSettings", "LossOfFix", "SimulatedEpoch", "simulated_epochs"]
 
 STEPS_A_SECOND = 50
 """Of the vehicle model; a multiple of every rate up to 50 Hz that divides it."""

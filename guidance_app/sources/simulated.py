@@ -8,6 +8,7 @@ import math
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
 from types import MappingProxyType
 from urllib.parse import parse_qsl
 
@@ -26,7 +27,7 @@ from guidance_app.guidance.wishes import request_of
 from guidance_app.language import sentence
 from guidance_app.model import Chunk, FloatArray, Segment, SegmentKind, SourceUp
 from guidance_app.simulation.driver import DriverSettings
-from guidance_app.simulation.job import JobSettings, simulated_epochs
+from guidance_app.simulation.job import START, JobSettings, simulated_epochs
 from guidance_app.simulation.receiver import SENTENCES, ReceiverSettings
 from guidance_app.simulation.sample import sample_job
 from guidance_app.sources import SourceError
@@ -57,7 +58,7 @@ class SimulatedOptions:
     speed_kmh: float = 9.0
     sentences: tuple[str, ...] = ("GGA", "RMC", "VTG")
 
-    def job_settings(self, *, endless: bool) -> JobSettings:
+    def job_settings(self, way: "Way") -> JobSettings:
         """The same for the simulation. What has an end is followed by standing until somebody stops it."""
         return JobSettings(
             driver=DriverSettings(work_speed=self.speed_kmh * KMH),
@@ -65,18 +66,23 @@ class SimulatedOptions:
             stand_s=5.0,
             end_s=math.inf,
             start_right=0.5,
-            endless=endless,
+            endless=way.endless,
+            start=way.start,
         )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Way:
-    """What is driven, by which tractor with which implement; ``endless`` when its end leads to its beginning."""
+    """What is driven, by which tractor with which implement; ``endless`` when its end leads to its beginning.
+
+    ``start`` is what the receiver's clock shows first: a drive that goes on after a power cut must not go back in time.
+    """
 
     frame: FieldFrame
     segments: tuple[Segment, ...]
     machine: tuple[Tractor, Implement]
     endless: bool
+    start: datetime = START
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +104,7 @@ class SimulatedSource:
             way.segments,
             way.machine,
             way.frame,
-            self.options.job_settings(endless=way.endless),
+            self.options.job_settings(way),
             np.random.default_rng(self.options.seed),
         )
         for epoch in epochs:
@@ -155,7 +161,7 @@ def open_simulated_on(uri: str, job: Job) -> SimulatedSource:
         msg = sentence("the simulated tractor finds no way on this field: {reason}", reason=str(error))
         raise SourceError(msg) from error
     segments = tuple(_drivable(plan.segments, request))
-    way = Way(frame, segments, (job.tractor, job.implement), endless=False)
+    way = Way(frame, segments, (job.tractor, job.implement), endless=False, start=datetime.now(UTC).replace(microsecond=0))
     said = sentence("simulated receiver on the field '{field}'", field=job.field.name)
     return replace(source, way=way, description=said)
 

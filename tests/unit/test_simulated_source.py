@@ -12,6 +12,7 @@ from guidance_app.boundary import frame_of, polygon_in
 from guidance_app.decode.decoder import Decoder
 from guidance_app.documents import FieldDocument, Geometry, Job, Method
 from guidance_app.model import Chunk, Fix, SourceUp
+from guidance_app.simulation.job import START
 from guidance_app.simulation.sample import sample_job
 from guidance_app.sources import SourceError, open_receiver, open_source
 from guidance_app.sources.simulated import open_simulated, open_simulated_on, sample_drive
@@ -89,6 +90,17 @@ def test_the_tractor_of_a_job_drives_its_field_by_its_plan_and_then_stands(metho
     worked = shapely.unary_union([shapely.LineString(one.points) for one in source.way.segments if one.implement_down])
     assert worked.intersection(track.buffer(1.5)).length > 0.97 * worked.length
     assert np.ptp(places[-20:], axis=0).max() < 2.0  # it has come to its end and stands
+
+
+def test_a_drive_that_goes_on_does_not_go_back_in_time() -> None:
+    before = open_simulated_on("sim:", sample_job())
+    after = open_simulated_on("sim:", sample_job())
+    assert before.way is not None
+    assert after.way is not None
+    assert after.way.start >= before.way.start > START
+    first = fixes_of([one for one in itertools.islice(after.events(threading.Event()), 9) if isinstance(one, Chunk)])[0]
+    day = after.way.start.hour * 3600 + after.way.start.minute * 60 + after.way.start.second
+    assert first.t % 86_400 == pytest.approx(day, abs=1.0)
 
 
 def test_a_job_without_a_field_is_driven_on_the_sample() -> None:
