@@ -2,7 +2,6 @@
 
 import argparse
 import json
-import math
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,9 +10,10 @@ from typing import Any
 from guidance_app.batch.plans import plan_as_geojson, plan_as_json
 from guidance_app.boundary import frame_of, polygon_in
 from guidance_app.commands.options import UseError
-from guidance_app.documents import Direction, FieldDocument, Method
+from guidance_app.commands.plan_options import add_plan_options, is_about_one_field, request_for
+from guidance_app.documents import FieldDocument
 from guidance_app.geodesy import FieldFrame
-from guidance_app.guidance.planning import PlanError, PlanRequest, plan_operation
+from guidance_app.guidance.planning import PlanError, plan_operation
 from guidance_app.model import Plan
 from guidance_app.store import StoreError, field_from_file
 from guidance_app.store.files import write_atomically
@@ -22,7 +22,6 @@ __all__ = ["add_parser", "run"]
 
 PICTURES = {".png", ".svg"}
 DOCUMENTS = {".json", ".geojson"}
-METHODS = [method.value for method in Method if method is not Method.LINE]
 
 
 def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -34,14 +33,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         " JSON, GeoJSON or, with the figures extra, as a picture; a folder gives one picture of all plans.",
     )
     parser.add_argument("field", type=Path, metavar="FIELD", help="GeoJSON, a field document, or a folder of them")
-    parser.add_argument("--width", type=_number, required=True, metavar="METRES", help="working width")
-    parser.add_argument("--radius", type=_number, required=True, metavar="METRES", help="turning radius")
-    parser.add_argument("--method", choices=METHODS, default=Method.ROUND_TRIP.value, help="how the passes are driven")
-    parser.add_argument("--overlap", type=_number, default=0.0, metavar="METRES", help="of neighbouring passes")
-    parser.add_argument("--laps", type=int, metavar="N", help="headland laps (default: as many as a turn needs)")
-    parser.add_argument(
-        "--direction", default=Direction.LONGEST_EDGE.value, metavar="DEG|best|longest-edge", help="of the passes"
-    )
+    add_plan_options(parser)
     parser.add_argument("--out", type=Path, metavar="FILE", help=".json, .geojson, .png or .svg")
     parser.add_argument("--json", action="store_true", help="print the plan (of a folder: its costs) as JSON")
     parser.set_defaults(func=run)
@@ -50,10 +42,9 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 def run(arguments: argparse.Namespace) -> int:
     """Plans one field, or all of a folder; of a folder, fields that cannot be planned are named and left out."""
     _check_out(arguments)
-    request = _request(arguments)
     if arguments.field.is_dir():
-        return _plan_folder(arguments, request)
-    field, frame, plan, seconds = _planned(arguments.field, request)
+        return _plan_folder(arguments)
+    field, frame, plan, seconds = _planned(arguments.field, arguments)
     document = plan_as_json(plan, frame, seconds)
     if arguments.out is not None:
         _write(arguments.out, field, frame, plan, seconds)
@@ -61,21 +52,25 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _planned(path: Path, request: PlanRequest) -> tuple[FieldDocument, FieldFrame, Plan, float]:
+def _planned(path: Path, arguments: argparse.Namespace) -> tuple[FieldDocument, FieldFrame, Plan, float]:
     field = field_from_file(path)
+    request = request_for(arguments, field)
     frame = frame_of(field.boundary)
     begin = time.process_time()
     plan = plan_operation(polygon_in(frame, field.boundary), request)
     return field, frame, plan, time.process_time() - begin
 
 
-def _plan_folder(arguments: argparse.Namespace, request: PlanRequest) -> int:
+def _plan_folder(arguments: argparse.Namespace) -> int:
+    if is_about_one_field(arguments):
+        msg = "places and numbers of exclusions belong to one field: name its file instead of a folder"
+        raise UseError(msg)
     if arguments.out is not None and arguments.out.suffix.lower() in DOCUMENTS:
         msg = f"{arguments.out}: a folder of fields is written as a picture (.png, .svg), not as a document"
         raise UseError(msg)
     made = []
     rows: list[dict[str, Any]] = []
-    for path, outcome in _each(arguments.field, request):
+    for path, outcome in _each(arguments):
         if isinstance(outcome, str):
             rows.append({"field": path.name, "error": outcome})
             continue
@@ -95,47 +90,13 @@ def _plan_folder(arguments: argparse.Namespace, request: PlanRequest) -> int:
 
 
 def _each(
-    folder: Path, request: PlanRequest
+    arguments: argparse.Namespace,
 ) -> Iterator[tuple[Path, str | tuple[FieldDocument, FieldFrame, Plan, float]]]:
-    for path in sorted(one for one in folder.iterdir() if one.suffix.lower() in DOCUMENTS):
+    for path in sorted(one for one in arguments.field.iterdir() if one.suffix.lower() in DOCUMENTS):
         try:
-            yield path, _planned(path, request)
+            yield path, _planned(path, arguments)
         except (StoreError, PlanError) as error:
             yield path, str(error)
-
-
-def _request(arguments: argparse.Namespace) -> PlanRequest:
-    direction, heading = _direction(arguments.direction)
-    return PlanRequest(
-        width=arguments.width,
-        overlap=arguments.overlap,
-        radius=arguments.radius,
-        method=Method(arguments.method),
-        laps=arguments.laps,
-        direction=direction,
-        heading=heading,
-    )
-
-
-def _direction(text: str) -> tuple[Direction, float | None]:
-    if text in {Direction.BEST.value, Direction.LONGEST_EDGE.value}:
-        return Direction(text), None
-    try:
-        degrees = float(text.replace(",", "."))
-    except ValueError:
-        degrees = math.nan
-    if not math.isfinite(degrees):
-        msg = f"--direction is {text!r}: give degrees from north, best, or longest-edge"
-        raise UseError(msg)
-    return Direction.TYPED, math.radians(degrees % 360.0)
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text.replace(",", "."))
-    except ValueError:
-        msg = f"{text!r} is not a number of metres"
-        raise argparse.ArgumentTypeError(msg) from None
 
 
 def _check_out(arguments: argparse.Namespace) -> None:

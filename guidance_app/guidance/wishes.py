@@ -24,7 +24,7 @@ from guidance_app.geodesy import FieldFrame
 from guidance_app.guidance.request import LastPass, PlanError, PlanRequest
 from guidance_app.language import sentence
 
-__all__ = ["Places", "exclusions_with", "request_from_documents", "request_of"]
+__all__ = ["Places", "edge_place", "exclusions_with", "line_places", "request_from_documents", "request_of"]
 
 STRAIGHT = ("ab", "a-plus")
 """Kinds of guidance lines that straight passes can lie beside."""
@@ -116,26 +116,28 @@ def _chosen(operation: Operation, start: _Place | None) -> dict[str, Any]:
 
 def _places(field: FieldDocument, operation: Operation, frame: FieldFrame, start: _Place | None) -> Places:
     line = edge = None
+    over = exclusions_with(field, operation.passable)
+    if operation.over_exclusions:
+        over = frozenset(range(len(field.boundary.coordinates) - 1))
     if operation.direction is Direction.LINE:
-        line = _line(field, operation.guidance_line, frame)
+        line = line_places(field, operation.guidance_line, frame)
     if operation.direction is Direction.EDGE and operation.edge_at is not None:
-        edge = _edge(field, operation, operation.edge_at, frame)
-    return Places(start, line, edge, exclusions_with(field, operation.passable))
+        edge = edge_place(field, operation.edge_at, frame, over)
+    return Places(start, line, edge, over)
 
 
-def _edge(field: FieldDocument, operation: Operation, at: Position, frame: FieldFrame) -> _Place:
-    """The tapped place; an edge that is gone is said so, because another one would be another direction.
+def edge_place(field: FieldDocument, at: Position, frame: FieldFrame, over: frozenset[int]) -> _Place:
+    """A place near an edge, in the frame; an edge that is gone is said so, for another one is another direction.
 
-    Exclusions that are driven over have no edges.
+    Exclusions that are driven ``over`` have no edges. Raises ``PlanError``.
     """
     place = _place(at, frame)
     polygon = polygon_in(frame, field.boundary)
-    over = exclusions_with(field, operation.passable)
-    left = [] if operation.over_exclusions else [r for n, r in enumerate(polygon.interiors) if n not in over]
+    left = [ring for number, ring in enumerate(polygon.interiors) if number not in over]
     away = shapely.Polygon(polygon.exterior, left).boundary.distance(shapely.Point(place))
     if away > MOVED:
         msg = sentence(
-            "the tapped edge of the field '{field}' is not there any more: tap an edge again", field=field.name
+            "no edge of the field '{field}' is left at the chosen place: choose an edge again", field=field.name
         )
         raise PlanError(msg)
     return place
@@ -151,8 +153,8 @@ def exclusions_with(field: FieldDocument, places: Sequence[Position]) -> frozens
     return frozenset(number for number, hole in enumerate(holes) if bool(shapely.covers(hole, points).any()))
 
 
-def _line(field: FieldDocument, name: str, frame: FieldFrame) -> tuple[_Place, _Place]:
-    """The straight guidance line of this name, or the field's first; a name that is not there is said so."""
+def line_places(field: FieldDocument, name: str, frame: FieldFrame) -> tuple[_Place, _Place]:
+    """Both ends of the straight guidance line of this name, or of the field's first one; none is a ``PlanError``."""
     straight = [each for each in field.lines if each.type in STRAIGHT]
     found = next((each for each in straight if not name or each.name == name), None)
     if found is None:

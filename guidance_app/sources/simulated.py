@@ -161,7 +161,9 @@ def open_simulated_on(uri: str, job: Job) -> SimulatedSource:
         msg = sentence("the simulated tractor finds no way on this field: {reason}", reason=str(error))
         raise SourceError(msg) from error
     segments = tuple(_drivable(plan.segments, request))
-    way = Way(frame, segments, (job.tractor, job.implement), endless=False, start=datetime.now(UTC).replace(microsecond=0))
+    way = Way(
+        frame, segments, (job.tractor, job.implement), endless=False, start=datetime.now(UTC).replace(microsecond=0)
+    )
     said = sentence("simulated receiver on the field '{field}'", field=job.field.name)
     return replace(source, way=way, description=said)
 

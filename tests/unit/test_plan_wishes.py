@@ -138,7 +138,7 @@ def test_the_tapped_edge_of_an_operation_gives_the_direction_and_outlives_a_shif
     ids=["in the middle", "of an exclusion that is driven over"],
 )
 def test_a_tapped_edge_that_is_gone_is_said(at: tuple[float, float], wishes: Mapping[str, Any]) -> None:
-    with pytest.raises(PlanError, match="the tapped edge of the field 'F' is not there any more"):
+    with pytest.raises(PlanError, match="no edge of the field 'F' is left at the chosen place"):
         request_of(a_job(direction=Direction.EDGE, edge_at=degrees(np.array([at]))[0], **wishes))
 
 
