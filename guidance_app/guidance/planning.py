@@ -83,12 +83,7 @@ def plan_on(groundwork: Groundwork, request: PlanRequest) -> Plan:
             break
         layout = layout.without(gone)
     if not tasks:
-        msg = sentence(
-            "a working width of {width:g} m is too wide for this field of {area:.2f} ha",
-            width=request.width,
-            area=layout.ground.area / 1e4,
-        )
-        raise PlanError(msg)
+        raise PlanError(_nothing(layout, request))
     segments = tuple(joiner.segments(tasks))
     return Plan(
         method=method.name,
@@ -98,6 +93,21 @@ def plan_on(groundwork: Groundwork, request: PlanRequest) -> Plan:
         mainland=tuple(_rings(part) for part in layout.headland.mainland if layout.headland.laps),
         costs=costs_of(segments, layout.ground, layout.worked, layout.swaths_area, request),
         warnings=tuple(_warnings(segments, layout, request)),
+    )
+
+
+def _nothing(layout: Layout, request: PlanRequest) -> str:
+    """Why neither a lap nor a pass is left: the tractor's circle is wider than the field, or the swath is."""
+    west, south, east, north = layout.ground.bounds
+    area = layout.ground.area / 1e4
+    if 2 * request.radius > max(east - west, north - south):
+        return sentence(
+            "a turning radius of {radius:g} m is too large for this field of {area:.2f} ha",
+            radius=request.radius,
+            area=area,
+        )
+    return sentence(
+        "a working width of {width:g} m is too wide for this field of {area:.2f} ha", width=request.width, area=area
     )
 
 
