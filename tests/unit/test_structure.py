@@ -62,7 +62,7 @@ def _modules_in(package: str) -> set[str]:
 @pytest.mark.parametrize(
     ("package", "shared"),
     [
-        ("guidance_app.commands", {"options", "serving"}),
+        ("guidance_app.commands", {"options", "plan_options", "serving"}),
         ("guidance_app.sources", {"addresses", "baud", "kept", "merged", "ntrip", "pacing", "ports"}),
         ("guidance_app.estimation.filters", set()),
         ("guidance_app.guidance.patterns", set()),
