@@ -91,7 +91,8 @@ def best_heading(mainland: Sequence[Polygon], request: PlanRequest) -> float:
     turn = (math.pi * request.path_radius + request.spacing) / request.turn_speed
     guess = counts * turn + slants / request.work_speed
     exact = int(np.clip(EXACT_PASSES / counts.min(), 2, EXACT))
-    likely = np.argsort(np.where(counts <= counts.min() + SLACK, guess, np.inf))[:exact]
+    few = np.flatnonzero(counts <= counts.min() + SLACK)
+    likely = few[np.argsort(guess[few])][:exact]
     cuts = {}
     for heading in headings[likely]:
         pieces = cut(mainland, strips_over(mainland, float(heading), request.spacing, LastPass.OVERLAP, None))

@@ -25,6 +25,8 @@ from guidance_app.documents import (
     Tractor,
 )
 from guidance_app.geodesy import FieldFrame
+from guidance_app.guidance.cells import cut, strips_over
+from guidance_app.guidance.direction import best_heading
 from guidance_app.guidance.planning import PlanError, PlanRequest, plan_operation
 from guidance_app.guidance.request import LastPass
 from guidance_app.guidance.wishes import request_of
@@ -227,3 +229,15 @@ def test_nothing_that_fits_bends_tighter_than_the_turning_circle(change: Mapping
     plan = plan_operation(field, PlanRequest(width=9.0, **change))
     assert all(each.fits for each in plan.segments)
     assert tightest(plan.segments, 5.0) <= 1.0
+
+
+@pytest.mark.parametrize("narrow", [26.0, 60.0, 150.0])
+def test_the_best_direction_takes_at_most_one_pass_more_than_the_fewest(narrow: float) -> None:
+    field = shapely.Polygon([(0, 0), (1400, 300), (1400 - narrow / 5, 300 + narrow), (-narrow / 5, narrow)])
+    request = PlanRequest(width=6.0, direction=Direction.BEST)
+
+    def passes_at(heading: float) -> int:
+        return len(cut([field], strips_over([field], heading, 6.0, LastPass.OVERLAP, None)))
+
+    fewest = min(passes_at(math.radians(half / 2)) for half in range(360))
+    assert passes_at(best_heading([field], request)) <= fewest + 1
