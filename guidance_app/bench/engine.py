@@ -1,11 +1,10 @@
 """How much faster than real time the engine is, and whether a fix costs the same in hour 8 as in minute 10."""
 
-import argparse
 import statistics
 import time
 from collections.abc import Iterator
 
-from guidance_app.bench.rows import Row, add_json_option, shown
+from guidance_app.bench.rows import Row, Subparsers, add_bench, add_hours
 from guidance_app.bench.streams import Day, day_of_work, first_chunks
 from guidance_app.engine import Engine
 from guidance_app.estimation.filters import FILTERS
@@ -19,22 +18,16 @@ WINDOW_FIXES = 500
 WINDOWS = 12
 
 
-def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_parser(subparsers: Subparsers) -> None:
     """Describes the bench."""
-    parser = subparsers.add_parser(
+    parser = add_bench(
+        subparsers,
         "engine",
-        help="decode, filter, tracking and coverage on one core: times real time, and flatness over the hours",
-        description="Feeds the bytes of a simulated day's work (10 Hz, GGA RMC VTG, 12 m) to the engine on one core.",
+        lambda given: measured(given.hours),
+        about="decode, filter, tracking and coverage on one core: times real time, and flatness over the hours",
+        does="Feeds the bytes of a simulated day's work (10 Hz, GGA RMC VTG, 12 m) to the engine on one core.",
     )
-    parser.add_argument("--hours", type=float, default=8.0, help="length of the day (default 8)")
-    add_json_option(parser)
-    parser.set_defaults(func=run)
-
-
-def run(arguments: argparse.Namespace) -> int:
-    """Prints the rows."""
-    print(shown(measured(arguments.hours), as_json=arguments.json))  # noqa: T201 - a bench is a command
-    return 0
+    add_hours(parser)
 
 
 def measured(hours: float) -> list[Row]:

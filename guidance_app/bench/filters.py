@@ -7,13 +7,12 @@ as the console calls it. The peers are called for each fix too, on the bare matr
 those of the processor, the best of several runs: what else the machine does only ever makes them longer.
 """
 
-import argparse
 import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from guidance_app.bench.rows import Row, add_json_option, shown
+from guidance_app.bench.rows import Row, Subparsers, add_bench
 from guidance_app.estimation.filter import QuantisationSettings
 from guidance_app.estimation.filters import make_filter
 from guidance_app.evaluation.comparisons import Case, recording_of
@@ -33,7 +32,7 @@ from guidance_app.evaluation.smoothed import smooth_recording
 from guidance_app.evaluation.tracks import Recording, measurements
 from guidance_app.evaluation.tuning import Found, chunks_of, cma_search, noise_of, random_search
 
-__all__ = ["FilterTime", "add_parser", "filter_rows", "filter_times", "run", "tuning_rows"]
+__all__ = ["FilterTime", "add_parser", "filter_rows", "filter_times", "rows_of", "tuning_rows"]
 
 FIXES = 2000
 FEWER = 400
@@ -61,30 +60,29 @@ class FilterTime:
     ratio: float | None = None
 
 
-def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_parser(subparsers: Subparsers) -> None:
     """Describes the bench."""
-    parser = subparsers.add_parser(
+    add_bench(
+        subparsers,
         "filters",
-        help="time per fix of every filter, beside filterpy and Stone Soup on the same four-state filter",
-        description="Times every filter one fix at a time, quantisation_kf and the smoother over a whole recording,"
+        lambda _: rows_of(filter_times()),
+        about="time per fix of every filter, beside filterpy and Stone Soup on the same four-state filter",
+        does="Times every filter one fix at a time, quantisation_kf and the smoother over a whole recording,"
         " and both peers on the same filter in the same run.",
     )
-    add_json_option(parser)
-    parser.set_defaults(func=run)
 
 
-def run(arguments: argparse.Namespace) -> int:
-    """Prints the rows."""
+def rows_of(times: list[FilterTime]) -> list[Row]:
+    """The times as rows."""
     rows = []
-    for entry in filter_times():
+    for entry in times:
         goal = GOALS.get(entry.name)
         rows.append(Row("filters", entry.name, entry.microseconds, "us", "" if goal is None else f"<= {goal:g}"))
         if entry.ratio is not None:
             rows.append(
                 Row("filters", f"{entry.name}, over ours", entry.ratio, "x", note="one fix at a time, same run")
             )
-    print(shown(rows, as_json=arguments.json))  # noqa: T201 - a bench is a command
-    return 0
+    return rows
 
 
 def filter_times() -> list[FilterTime]:

@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from guidance_app.bench.errors import BenchError
-from guidance_app.bench.rows import Row, add_json_option, shown
+from guidance_app.bench.rows import Row, Subparsers, add_bench
 from guidance_app.bench.streams import day_of_work
 from guidance_app.bench.wire import SceneClient
 from guidance_app.console.house import House
@@ -35,7 +35,7 @@ from guidance_app.runtime import SessionManager, Tap
 from guidance_app.view.bar import bar_of
 from guidance_app.view.bar_wire import bar_json
 
-__all__ = ["Growth", "Hour", "Joining", "Stretch", "add_parser", "measured", "rows_of", "run"]
+__all__ = ["Growth", "Hour", "Joining", "Stretch", "add_parser", "measured", "rows_of"]
 
 FIXES_A_REDRAW = 100
 MINUTE = 60.0
@@ -131,26 +131,19 @@ class Growth:
     joining: Joining
 
 
-def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_parser(subparsers: Subparsers) -> None:
     """Describes the bench."""
-    parser = subparsers.add_parser(
+    parser = add_bench(
+        subparsers,
         "growth",
-        help="bytes on the wire per fix and memory over a simulated day, and a client that joins at its end",
-        description="Works a simulated day (10 Hz) as fast as possible while a client hears everything that is drawn.",
+        lambda given: rows_of(measured(given.hours, given.seconds)),
+        about="bytes on the wire per fix and memory over a simulated day, and a client that joins at its end",
+        does="Works a simulated day (10 Hz) as fast as possible while a client hears everything that is drawn.",
     )
     parser.add_argument("--hours", type=_hours, default=8.0, help="length of the day (default 8, at least 0.5)")
     parser.add_argument(
         "--seconds", type=float, default=10.0, help="length of each of the two stretches in true time (default 10)"
     )
-    add_json_option(parser)
-    parser.set_defaults(func=run)
-
-
-def run(arguments: argparse.Namespace) -> int:
-    """Prints the rows. Raises ``BenchError``."""
-    rows = rows_of(measured(arguments.hours, arguments.seconds))
-    print(shown(rows, as_json=arguments.json))  # noqa: T201 - a bench is a command
-    return 0
 
 
 def _hours(text: str) -> float:

@@ -21,7 +21,7 @@ import numpy as np
 
 from guidance_app.bench.browser import Browser
 from guidance_app.bench.errors import BenchError
-from guidance_app.bench.rows import Row, add_json_option, shown
+from guidance_app.bench.rows import Row, Subparsers, add_bench
 from guidance_app.bench.streams import day_of_work, first_chunks
 from guidance_app.bench.wire import BarClient, SceneClient
 from guidance_app.console.server import Console
@@ -29,7 +29,7 @@ from guidance_app.model import Chunk, Snapshot
 from guidance_app.runtime import LiveSession
 from guidance_app.sources import SourceEvent
 
-__all__ = ["Drawn", "Latency", "add_parser", "measured", "rows_of", "run", "times_to_drawn"]
+__all__ = ["Drawn", "Latency", "add_parser", "measured", "rows_of", "times_to_drawn"]
 
 LEAN_CLIENTS = 2
 WARM_UP_S = 5.0
@@ -87,24 +87,17 @@ class Latency:
     note: str
 
 
-def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_parser(subparsers: Subparsers) -> None:
     """Describes the bench."""
-    parser = subparsers.add_parser(
+    parser = add_bench(
+        subparsers,
         "latency",
-        help="from a fix's bytes to the light bar drawn in a browser, with three clients",
-        description="Runs a live session at 10 Hz with a real Chromium and two more clients on this machine. Needs"
+        lambda given: rows_of(measured(given.seconds)),
+        about="from a fix's bytes to the light bar drawn in a browser, with three clients",
+        does="Runs a live session at 10 Hz with a real Chromium and two more clients on this machine. Needs"
         " Chromium, and Playwright from the extra 'test'.",
     )
     parser.add_argument("--seconds", type=_seconds, default=60.0, help="length of the measurement (default 60)")
-    add_json_option(parser)
-    parser.set_defaults(func=run)
-
-
-def run(arguments: argparse.Namespace) -> int:
-    """Prints the rows. Raises ``BenchError`` without a browser."""
-    rows = rows_of(measured(arguments.seconds))
-    print(shown(rows, as_json=arguments.json))  # noqa: T201 - a bench is a command
-    return 0
 
 
 def _seconds(text: str) -> float:

@@ -5,7 +5,6 @@ The columns ``peer`` are what Fields2Cover 2.1.0 reached on 79 real fields (26 c
 field. Planners with wheels run beside ours where they are installed.
 """
 
-import argparse
 import statistics
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -18,7 +17,7 @@ from guidance_app.bench.errors import BenchError
 from guidance_app.bench.plan_cases import Case, case_of
 from guidance_app.bench.plan_peers import installed, peer_case
 from guidance_app.bench.plan_searches import search_rows
-from guidance_app.bench.rows import Row, add_json_option, shown
+from guidance_app.bench.rows import Row, Subparsers, add_bench
 from guidance_app.boundary import frame_of, polygon_in
 from guidance_app.documents import Direction, Method
 from guidance_app.guidance.planning import PlanError, PlanRequest, plan_operation
@@ -40,23 +39,17 @@ PEER_LAPS = 2
 Fields = Sequence[tuple[str, shapely.Polygon]]
 
 
-def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_parser(subparsers: Subparsers) -> None:
     """Describes the bench."""
-    parser = subparsers.add_parser(
+    parser = add_bench(
+        subparsers,
         "plan",
-        help="plans of a folder of fields: worked, outside, turns that do not fit, time",
-        description="Plans every field of a folder at 3, 6, 12 and 24 m by round trip in the best direction, and prints"
+        lambda given: measured(given.fields),
+        about="plans of a folder of fields: worked, outside, turns that do not fit, time",
+        does="Plans every field of a folder at 3, 6, 12 and 24 m by round trip in the best direction, and prints"
         " median, tenth or ninetieth percentile and the worst field of each quantity; the other methods at 6 m.",
     )
     parser.add_argument("--fields", type=Path, required=True, metavar="DIR", help="folder of GeoJSON polygons")
-    add_json_option(parser)
-    parser.set_defaults(func=run)
-
-
-def run(arguments: argparse.Namespace) -> int:
-    """Prints the rows."""
-    print(shown(measured(arguments.fields), as_json=arguments.json))  # noqa: T201 - a bench is a command
-    return 0
 
 
 def measured(folder: Path) -> list[Row]:

@@ -1,6 +1,5 @@
 """What recording a drive costs, how large it gets, and how soon a long one is open and any second of it is reached."""
 
-import argparse
 import statistics
 import tempfile
 import threading
@@ -11,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from guidance_app.bench.errors import BenchError
-from guidance_app.bench.rows import Row, add_json_option, shown
+from guidance_app.bench.rows import Row, Subparsers, add_bench, add_hours
 from guidance_app.bench.streams import Day, day_of_work, first_chunks
 from guidance_app.model import Snapshot
 from guidance_app.runtime import ReplaySession, new_recording
@@ -29,22 +28,16 @@ NEAR = 0.25
 """A jump has arrived when the snapshot is so near (s): between two epochs there is none."""
 
 
-def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_parser(subparsers: Subparsers) -> None:
     """Describes the bench."""
-    parser = subparsers.add_parser(
+    parser = add_bench(
+        subparsers,
         "recording",
-        help="what recording costs, its size, opening a long one, and jumps in it",
-        description="Records a simulated day's work (10 Hz, GGA RMC VTG), opens it twice and jumps about in it.",
+        lambda given: measured(given.hours),
+        about="what recording costs, its size, opening a long one, and jumps in it",
+        does="Records a simulated day's work (10 Hz, GGA RMC VTG), opens it twice and jumps about in it.",
     )
-    parser.add_argument("--hours", type=float, default=8.0, help="length of the day (default 8)")
-    add_json_option(parser)
-    parser.set_defaults(func=run)
-
-
-def run(arguments: argparse.Namespace) -> int:
-    """Prints the rows."""
-    print(shown(measured(arguments.hours), as_json=arguments.json))  # noqa: T201 - a bench is a command
-    return 0
+    add_hours(parser)
 
 
 def measured(hours: float, paced_s: float = PACED_S, jumps: int = JUMPS) -> list[Row]:

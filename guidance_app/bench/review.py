@@ -1,6 +1,5 @@
 """How soon a long recording is open for looking back: with the columns kept while driving, without them, and again."""
 
-import argparse
 import shutil
 import tempfile
 import threading
@@ -8,7 +7,7 @@ import time
 from pathlib import Path
 
 from guidance_app.batch.reviewing import opened_review
-from guidance_app.bench.rows import Row, add_json_option, shown
+from guidance_app.bench.rows import Row, Subparsers, add_bench, add_hours
 from guidance_app.bench.streams import Day, day_of_work
 from guidance_app.engine import Engine
 from guidance_app.runtime import new_recording
@@ -21,22 +20,16 @@ AT_ONCE = 600.0
 """Seconds of the day that are given to the recorder before it is waited for, as a drive never hurries ahead of it."""
 
 
-def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def add_parser(subparsers: Subparsers) -> None:
     """Describes the bench."""
-    parser = subparsers.add_parser(
+    parser = add_bench(
+        subparsers,
         "review",
-        help="opening a long recording for looking back",
-        description="Drives and records a simulated day's work (10 Hz, GGA RMC VTG) at full speed and opens it.",
+        lambda given: measured(given.hours),
+        about="opening a long recording for looking back",
+        does="Drives and records a simulated day's work (10 Hz, GGA RMC VTG) at full speed and opens it.",
     )
-    parser.add_argument("--hours", type=float, default=8.0, help="length of the day (default 8)")
-    add_json_option(parser)
-    parser.set_defaults(func=run)
-
-
-def run(arguments: argparse.Namespace) -> int:
-    """Prints the rows."""
-    print(shown(measured(arguments.hours), as_json=arguments.json))  # noqa: T201 - a bench is a command
-    return 0
+    add_hours(parser)
 
 
 def measured(hours: float) -> list[Row]:

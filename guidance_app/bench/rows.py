@@ -2,10 +2,11 @@
 
 import argparse
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
+from typing import TypeAlias
 
-__all__ = ["Row", "add_json_option", "shown"]
+__all__ = ["Row", "Subparsers", "add_bench", "add_hours", "shown"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,9 +21,22 @@ class Row:
     note: str = ""
 
 
-def add_json_option(parser: argparse.ArgumentParser) -> None:
-    """``--json``."""
+Subparsers: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"  # noqa: SLF001 - it has no other name
+
+
+def add_bench(
+    subparsers: Subparsers, name: str, rows: Callable[[argparse.Namespace], Sequence[Row]], *, about: str, does: str
+) -> argparse.ArgumentParser:
+    """A bench with ``--json``, described in a line and in sentences; ``rows`` measures, as its arguments wish."""
+    parser = subparsers.add_parser(name, help=about, description=does)
     parser.add_argument("--json", action="store_true", help="print rows as JSON instead of a table")
+    parser.set_defaults(rows=rows)
+    return parser
+
+
+def add_hours(parser: argparse.ArgumentParser) -> None:
+    """``--hours`` of the simulated day."""
+    parser.add_argument("--hours", type=float, default=8.0, help="length of the day (default 8)")
 
 
 def shown(rows: Sequence[Row], *, as_json: bool) -> str:

@@ -3,6 +3,8 @@
 import argparse
 import importlib
 
+from guidance_app.bench.rows import shown
+
 __all__ = ["add_parser", "run"]
 
 BENCHES = ("engine", "growth", "latency", "filters", "plan", "recording", "review")
@@ -21,6 +23,6 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Runs the chosen bench."""
-    status: int = arguments.func(arguments)
-    return status
+    """Prints the rows of the chosen bench."""
+    print(shown(arguments.rows(arguments), as_json=arguments.json))
+    return 0

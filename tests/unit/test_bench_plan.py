@@ -1,6 +1,5 @@
 """The bench of plans: every row of what is asked, a peer that fails is told so, a folder without fields too."""
 
-import argparse
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -67,7 +66,7 @@ def test_what_must_hold_on_any_field_holds(rows: list[Row]) -> None:
 
 def test_a_folder_without_fields_is_said(tmp_path: Path) -> None:
     with pytest.raises(BenchError, match="no GeoJSON"):
-        plan.run(argparse.Namespace(fields=tmp_path, json=False))
+        plan.measured(tmp_path)
 
 
 def test_a_case_counts_what_lies_outside() -> None:
