@@ -29,7 +29,7 @@ def serve(session: Session | None, arguments: argparse.Namespace, data: Path, op
     print(f"data folder: {data}")
     console.start()
     try:
-        _warm_up(wait=session is not None)
+        _warm_up(manager, arguments.filter if "filter" in arguments else None, wait=session is not None)
         manager.start()
         print(console.invitation(colour=sys.stdout.isatty()))
         print("Stop it with Ctrl-C.", flush=True)
@@ -41,9 +41,9 @@ def serve(session: Session | None, arguments: argparse.Namespace, data: Path, op
     return 0
 
 
-def _warm_up(*, wait: bool) -> None:
-    """Compiles what a drive needs before it begins; with nothing to drive yet, beside the setup."""
-    warming = Warming()
+def _warm_up(manager: SessionManager, filter_name: str | None, *, wait: bool) -> None:
+    """Compiles what a drive needs before it begins; with nothing to drive yet, beside the setup. The page says so."""
+    warming = Warming(filter_name, manager.say)
     warming.start()
     if wait and not warming.done(PATIENCE_S):
         print("compiling the filters: only the first start takes this long ...", flush=True)

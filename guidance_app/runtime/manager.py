@@ -8,6 +8,7 @@ changes with each one, so that a screen knows that it has to be made anew.
 import logging
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from guidance_app.documents import Implement, Job, Receiver, Settings, Tractor
@@ -54,6 +55,7 @@ class SessionManager:
         self._session: Session = idle_session() if first is None else first
         self._episode = 0
         self._settings: Settings | None = None
+        self._notice: str | None = None
         self._shown: tuple[Session, Settings | None, Job] | None = None
         self._hearers: dict[int, Hearer] = {}
         self._stop_hearing: dict[int, Callable[[], None]] = {}
@@ -100,9 +102,14 @@ class SessionManager:
         """Play, pause and seek; None when the source is live."""
         return self._session.replay
 
+    def say(self, notice: str | None) -> None:
+        """From now on this stands before the notices of every session; None takes it back."""
+        self._notice = notice
+
     def snapshot(self) -> Snapshot:
         """The newest snapshot."""
-        return self._session.snapshot()
+        snapshot, notice = self._session.snapshot(), self._notice
+        return snapshot if notice is None else replace(snapshot, notices=(notice, *snapshot.notices))
 
     def now(self) -> float:
         """The clock of the session in use."""

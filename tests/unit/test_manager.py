@@ -25,6 +25,16 @@ def test_who_hears_is_carried_over_to_the_next_session() -> None:
     assert second.listeners == 0
 
 
+def test_what_the_manager_says_stands_before_the_notices_of_the_session() -> None:
+    session = HandSession()
+    manager = SessionManager(session)
+    plain = manager.snapshot()
+    manager.say("Getting ready")
+    assert manager.snapshot().notices == ("Getting ready", *plain.notices)
+    manager.say(None)
+    assert manager.snapshot() is plain
+
+
 def test_commands_go_to_the_session_in_use() -> None:
     first, second = HandSession(), HandSession()
     manager = SessionManager(first)
