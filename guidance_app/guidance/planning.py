@@ -189,8 +189,9 @@ def _warnings(segments: Sequence[Segment], layout: Layout, request: PlanRequest)
     unfit = [join for join in joins_of(segments) if not all(each.fits for each in join)]
     if unfit:
         worst = max(each.missing for join in unfit for each in join)
+        many = sentence("{count} turns do not fit; the worst lacks {worst:.1f} m.", count=len(unfit), worst=worst)
         warnings.append(
-            sentence("{count} turns do not fit; the worst lacks {worst:.1f} m.", count=len(unfit), worst=worst)
+            many if len(unfit) > 1 else sentence("One turn does not fit; it lacks {worst:.1f} m.", worst=worst)
         )
     missed = 1 - layout.worked.intersection(layout.ground).area / layout.ground.area
     if missed > UNWORKED:
