@@ -1,6 +1,8 @@
 """What a finger picks from a field: an edge or exclusions, named by places that outlive changes of the field."""
 
+import itertools
 import math
+import re
 
 import numpy as np
 import pytest
@@ -92,6 +94,15 @@ def test_the_picture_tells_the_two_kinds_apart_without_colours() -> None:
     assert "stroke-dasharray" in over
     assert "stroke-dasharray" not in around
     assert all(f">{number}<" in over for number in (1, 2, 3))
+
+
+def test_the_numbers_of_many_small_exclusions_stand_apart() -> None:
+    poles = [box(100.0 + 9.0 * place, 45.0 + 4.0 * (place % 3), 2.0) for place in range(15)]
+    drawn = field_picture(picking_of(field_of(*poles)).rings, {2, 5}, words_for("en"))
+    found = re.findall(r'<text x="([\d.]+)" y="([\d.]+)"[^>]*>(\d+)<', drawn)
+    assert [int(number) for *_, number in found] == list(range(1, 16))
+    places = [(float(x), float(y)) for x, y, _ in found]
+    assert min(math.dist(one, other) for one, other in itertools.combinations(places, 2)) > 11.5
 
 
 @pytest.mark.parametrize(
