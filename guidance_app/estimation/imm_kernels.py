@@ -28,6 +28,7 @@ from guidance_app.estimation.observation_kernels import (
     GATE,
     GYRO,
     MEASUREMENTS,
+    SPEED_SD,
     STANDING,
     VELOCITY_ALONG,
     WHITE,
@@ -43,12 +44,14 @@ TEMPER = 1 / 3
 """The weights' power in the covariance that is shown. Successive roundings err alike, so the weights are surer of a
 model than they may be: untempered, the 95 % ellipse held 85 % on a spiral."""
 
-CAUTION = (0.33, 0.8, 0.49, 0.9)
-"""How much of the four models' covariance of the position is shown. What is left of a rounding error ends sharply, a
-normal one does not: shown whole, the 95 % ellipse holds 99.9 % on a line, which is as dishonest as 90."""
+CAUTION = (0.31, 0.8, 0.49, 0.9)
+CAUTION_WITH_SPEED = (0.37, 0.84, 0.44, 0.9)
+"""How much of the four models' covariance of the position is shown, without and with the receiver's speed. What is left
+of a rounding error ends sharply, a normal one does not: shown whole, the 95 % ellipse holds 99.9 % on a line, which is
+as dishonest as 90."""
 DRIVING = 0.3
 """Slower than this many m/s there is less and less to average, and more is shown: all of it at rest."""
-NEWEST, BEHIND = 0.2, 3.0
+NEWEST, BEHIND = 0.1, 5.0
 """Weight of the newest fix in the mean of how far the last ones lie off the estimates, and how many times its square is
 added: on a spiral the estimate is behind, and the ellipse held 87 % where it now holds 90."""
 SUMMARY = 11
@@ -186,7 +189,7 @@ def summary(belief: Belief, n: int, z: FloatArray, lag: FloatArray, fresh: bool)
     h = np.zeros(n)
     calm = 0.0  # how much of the covariance is shown
     for j in range(MODELS):
-        calm += belief[2][j] * CAUTION[j]
+        calm += belief[2][j] * (CAUTION_WITH_SPEED[j] if z[SPEED_SD] > 0.0 else CAUTION[j])
     calm = 1.0 - (1.0 - calm) * min(1.0, abs(mean[SPEED]) / DRIVING)
     for axis in range(2):
         out[9 + axis] = lag[axis]
