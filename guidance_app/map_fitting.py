@@ -60,12 +60,18 @@ class Fit:
 
 
 def fitted(points: Sequence[MatchedPoint], frame: FieldFrame) -> Fit:
-    """The photo on the ground. Raises ``FitError`` for too few points, points in one place or on one line."""
+    """The photo on the ground.
+
+    Raises ``FitError`` for too few points, points in one place or on one line, and points far from the frame's origin.
+    """
     if len(points) < 2:
         msg = f"{len(points)} point is matched; two or more are needed"
         raise FitError(msg)
     pixels = np.array([(one.right, one.down) for one in points], dtype=float)
-    ground = np.array([frame.east_north_from_degrees(one.latitude_deg, one.longitude_deg) for one in points])
+    try:
+        ground = np.array([frame.east_north_from_degrees(one.latitude_deg, one.longitude_deg) for one in points])
+    except ValueError as error:
+        raise FitError(*error.args) from error
     spread = np.hypot(*(pixels - pixels.mean(axis=0)).T)
     if float(spread.max()) < LEAST_PIXELS / 2:
         msg = "the points lie in nearly one place of the photo: choose points far apart"

@@ -220,6 +220,26 @@ def test_a_field_is_drawn_over_a_photo_that_two_points_lay(place: SetupPlace) ->
     place.until(lambda: "New field" in place.names(FieldDocument))
 
 
+def test_a_photo_far_from_the_field_on_the_map_is_not_laid(place: SetupPlace) -> None:
+    shown_field(place)
+    made = io.BytesIO()
+    Image.new("RGB", (400, 300), (40, 120, 60)).save(made, "PNG")
+    place.press("Photo")
+    place.send(PHOTO, "from above.png", made.getvalue())
+    place.sees("/w/sketch/picture")
+    for count, spot in enumerate(((-50.0, 0.0), (50.0, 0.0)), start=1):
+        place.client.tap(*spot)
+        place.sees("/w/sketch/spot")
+        place.fill("Latitude, longitude of the spot", f"47.5000, 8.500{count}")
+        place.press("As typed")
+        place.says("Spot 1")
+    place.says("more than 100 km from the field")
+    place.press("Undo")
+    place.sees_no("/w/sketch/spot")
+    place.press("Undo")
+    place.until(lambda: "Spot 1" not in place.client.words())
+
+
 def test_a_picture_that_is_none_is_refused_and_spots_need_a_tap(place: SetupPlace) -> None:
     place.press("Photo")
     place.send(PHOTO, "notes.png", b"nothing")

@@ -14,6 +14,7 @@ from guidance_app.console.files import Download
 from guidance_app.console.house import House
 from guidance_app.console.screen import Screen
 from guidance_app.documents import FieldDocument, Implement, Operation, Receiver, Tractor
+from guidance_app.language import words_for
 from guidance_app.runtime import SessionManager
 from guidance_app.sources.ports import ListPorts, found_ports
 from guidance_app.store import Store
@@ -49,6 +50,13 @@ class SetupPlace:
             if self.client.soon(true, SOON_S):
                 return
         pytest.fail(f"it did not happen; told: {self.told()}; the panels say: {self.client.words()}")
+
+    def is_open(self) -> bool:
+        """Whether the first page of each tab has come: what comes later belongs to a later page."""
+        words = words_for(self.house.settings().language)
+        no_field = words("No field is registered yet. Tap its corners, drive around it, type it, or take a file.")
+        fields = self.newest(words("Rename")) or no_field in self.client.words()
+        return bool(fields and self.newest(words("New operation")) and self.newest(words("Drive now")))
 
     def told(self) -> str:
         """Every notification so far."""
@@ -169,7 +177,10 @@ def setup_place(
     screen.attach()
     try:
         with viser_client(server) as client:
-            yield SetupPlace(house, screen, client)
+            place = SetupPlace(house, screen, client)
+            if session is None and folder is not None:
+                place.until(place.is_open)
+            yield place
     finally:
         house.close()
         manager.close()
