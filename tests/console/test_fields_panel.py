@@ -20,6 +20,8 @@ from guidance_app.store.photo_maps import list_maps
 SQUARE = [(-40.0, -40.0), (40.0, -40.0), (40.0, 40.0), (-40.0, 40.0)]
 
 
+WELL_ABOVE = 100.0
+"""Metres from which a field is seen as a whole; the driver's eyes are below 5 m."""
 TYPE, FILE, PHOTO = "At least 4 corners", "Nothing is stored before", "Choose a photo or a scanned map"
 
 
@@ -129,8 +131,12 @@ def test_a_moved_corner_is_stored_and_undone(place: SetupPlace) -> None:
     place.says("Tap a corner")
     place.client.tap(-500.0, -500.0)
     place.sees("/w/sketch/chosen")
+    drawn = len(place.client.heard("LineSegmentsMessage", name="/w/sketch/corners"))
     place.client.tap(-70.0, -95.0)
     place.until(lambda: store.load(FieldDocument, "Sample field").document != before)
+    place.until(lambda: len(place.client.heard("LineSegmentsMessage", name="/w/sketch/corners")) > drawn)
+    height = place.client.heard("SetCameraPositionMessage")[-1]["position"][2]
+    assert height > WELL_ABOVE, "the whole field is still in sight"
     place.press("Undo")
     place.until(lambda: store.load(FieldDocument, "Sample field").document == before)
 
