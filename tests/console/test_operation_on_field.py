@@ -8,34 +8,33 @@ import pytest
 import shapely
 import viser
 from support.setup_place import SetupPlace, setup_place
-from support.stage import running_viser
 
 from guidance_app.documents import Direction, FieldDocument, Method, Operation
 from guidance_app.field_editing import with_exclusion
 from guidance_app.guidance.picking import edge_words, picking_of
 from guidance_app.guidance.wishes import exclusions_with
-from guidance_app.store import copy_sample
+from guidance_app.store import Store, copy_sample
 
 POND = [(0.0, -40.0), (25.0, -40.0), (25.0, -20.0), (0.0, -20.0)]
 POLE = [(-30.0, -60.0), (-27.0, -60.0), (-27.0, -57.0), (-30.0, -57.0)]
 
 
-@pytest.fixture(scope="module")
-def server() -> Iterator[viser.ViserServer]:
-    """viser on a free port."""
-    with running_viser() as running:
-        yield running
+@pytest.fixture
+def store(tmp_path: Path) -> Store:
+    """The sample's documents; its field has a pond and a pole beside the exclusion that it comes with."""
+    made = Store(copy_sample(tmp_path))
+    stored = made.load(FieldDocument, "Sample field")
+    document = stored.document
+    for hole in (POND, POLE):
+        document = with_exclusion(picking_of(document).frame, document, hole)
+    made.save(document, stored.revision)
+    return made
 
 
 @pytest.fixture
-def place(server: viser.ViserServer, tmp_path: Path) -> Iterator[SetupPlace]:
-    """The sample's documents; its field has a pond and a pole beside the exclusion that it comes with."""
-    with setup_place(server, copy_sample(tmp_path)) as one:
-        stored = one.store.load(FieldDocument, "Sample field")
-        document = stored.document
-        for hole in (POND, POLE):
-            document = with_exclusion(picking_of(document).frame, document, hole)
-        one.store.save(document, stored.revision)
+def place(server: viser.ViserServer, store: Store) -> Iterator[SetupPlace]:
+    """A console on it."""
+    with setup_place(server, store.root) as one:
         yield one
 
 
@@ -180,14 +179,15 @@ def test_all_exclusions_are_passable_at_once_as_before(place: SetupPlace) -> Non
     place.until(lambda: chosen(place, "Passable"))
 
 
-def test_an_exclusion_that_is_gone_is_said_and_forgotten(place: SetupPlace) -> None:
-    stored = place.store.load(Operation, "Round trip")
-    corner = stored.document.model_copy(update={"passable": [picking_of(field_of(place)).edge_at(0.0, -200.0)]})
-    place.store.save(corner, stored.revision)
-    place.press("Round trip · Sample field")
-    place.says("An exclusion that was passable is not there any more")
-    place.press("Save")
-    place.until(lambda: place.store.load(Operation, "Round trip").document.passable == [])
+def test_an_exclusion_that_is_gone_is_said_and_forgotten(server: viser.ViserServer, store: Store) -> None:
+    stored = store.load(Operation, "Round trip")
+    corner = picking_of(store.load(FieldDocument, "Sample field").document).edge_at(0.0, -200.0)
+    store.save(stored.document.model_copy(update={"passable": [corner]}), stored.revision)
+    with setup_place(server, store.root) as place:
+        place.press("Round trip · Sample field")
+        place.says("An exclusion that was passable is not there any more")
+        place.press("Save")
+        place.until(lambda: place.store.load(Operation, "Round trip").document.passable == [])
 
 
 def test_a_field_without_exclusions_asks_nothing_about_them(place: SetupPlace) -> None:

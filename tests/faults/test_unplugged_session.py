@@ -107,7 +107,7 @@ def test_an_unplugged_receiver_blanks_the_bar_and_comes_back(tractor: Tractor) -
         tractor.receiver.unplug()
         snapshot = tractor.until(lambda one: one.link.status is LinkStatus.DOWN)
         words, level = link_words(snapshot.link, tractor.session.now(), ENGLISH)
-        assert (words.startswith("The receiver is gone, for <1 s"), level) == (True, "bad")
+        assert (words.startswith("The receiver is gone, for "), level) == (True, "bad")
         assert bar_of(snapshot, tractor.session.now(), tractor.session.job.settings).steering is None
         assert snapshot.links_beside[ATTITUDE].status is LinkStatus.ATTITUDE
         tractor.receiver.plug()
