@@ -21,6 +21,9 @@ __all__ = ["ON_THE_LINE", "CornerFinder"]
 ON_THE_LINE = 0.02
 """Metres within which a point counts as lying on a line."""
 
+BESIDE = 0.2
+"""Metres within which a lap that was evened still follows the ground that its arc cut off."""
+
 WORTH = 0.2
 """A corner of which more than this part of the working width would stay unworked is worth backing up for."""
 
@@ -65,7 +68,7 @@ class CornerFinder:
     def _corner(self, ring: Ring, line: LineString, cut: Polygon) -> Corner | None:
         tips = shapely.get_coordinates(cut.exterior)
         apart: FloatArray = np.asarray(shapely.distance(line, shapely.points(tips)))
-        touching = tips[apart < 2 * ON_THE_LINE]
+        touching = tips[apart < BESIDE]
         deepest = int(np.argmax(apart))
         if apart[deepest] * self._growth < self._worth or len(touching) < 2:
             return None

@@ -9,6 +9,8 @@ import shapely
 
 from guidance_app.boundary import frame_of, polygon_in
 from guidance_app.documents import Direction, Method
+from guidance_app.guidance.ground import ground_of
+from guidance_app.guidance.headland import headland_of
 from guidance_app.guidance.orders import lands, neighbours, racetrack, skipping
 from guidance_app.guidance.planning import PlanError, PlanRequest, plan_operation
 from guidance_app.guidance.swaths import united
@@ -137,3 +139,11 @@ def test_a_field_without_room_for_passes_is_a_plan_with_a_warning_or_a_sentence(
         assert planned.warnings
     else:
         assert str(planned)
+
+
+def test_every_sharp_corner_of_a_lap_is_worked_by_backing_up(real_data: Path) -> None:
+    """Evened by means, this lap runs centimetres off the circles that cut its corners."""
+    boundary = field_from_file(real_data / "fields" / "dk_093.geojson").boundary
+    request = PlanRequest(width=12.0, radius=6.0)
+    (lap,) = headland_of(ground_of(polygon_in(frame_of(boundary), boundary), request), request).laps
+    assert len(lap.corners) == 5
