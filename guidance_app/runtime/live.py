@@ -61,7 +61,8 @@ class LiveSession:
         self.recorder = recorder
         self._source = source
         self._engine = Engine(job, filter_name=filter_name, settings=settings, notices=notices)
-        self._publisher = Publisher(self._engine.snapshot)
+        first = self._engine.snapshot
+        self._publisher = Publisher(first if source is not None else replace(first, link=UNUSED))
         self._events: queue.SimpleQueue[Event | None] = queue.SimpleQueue()
         self._links: dict[str, None] = {RECEIVER: None}
         self._stop = threading.Event()

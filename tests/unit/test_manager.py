@@ -76,6 +76,7 @@ def test_without_a_session_it_rests_and_says_so() -> None:
         if snapshot.link.status is LinkStatus.UNUSED:
             said.set()
 
+    assert manager.snapshot().link.status is LinkStatus.UNUSED
     manager.subscribe(hear)
     manager.start()
     assert said.wait(10.0)
