@@ -21,8 +21,8 @@ __all__ = ["TOUCH", "Room"]
 TOUCH = 0.05
 """Metres that body or implement may stick out: a lap along the boundary touches it with the implement's end."""
 
-STEP = 1.2
-"""Metres along an arc between the places at which a candidate is checked."""
+STEP = 0.6
+"""Metres between the places at which a candidate is checked; a smaller obstacle could slip through between them."""
 
 SPACING, FEWEST, MOST = 1.2, 16, 150
 """Metres between the poses at which what is missing is measured, and how many there are at least and at most."""

@@ -170,7 +170,7 @@ def _move_clear(
         return False
     for piece in range(len(lengths)):
         size = abs(lengths[piece])
-        count = math.ceil(size / step) if turns[piece] != 0.0 else int(size > 0.0)
+        count = math.ceil(size / step)
         for _ in range(count):
             _advanced(pose, turns[piece], lengths[piece] / count, radius)
             _laid(outline, pose[0], pose[1], pose[2], corners)
@@ -195,7 +195,7 @@ def moves_clear(
     """For each move whether the outline touches no edge all along.
 
     ``starts`` (C, 3) are poses; ``moves`` are turns (C, P), lengths (C, P), the radius, and the metres between the
-    places on a circle at which the outline is tried. Along a straight the corners' ways are straight.
+    places at which the outline is tried: an obstacle may lie between its corners' ways.
     """
     turns, lengths, radius, step = moves
     clear = np.zeros(len(starts), dtype=np.bool_)

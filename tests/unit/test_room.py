@@ -83,6 +83,16 @@ def test_what_is_missing_is_how_far_the_machine_sticks_out() -> None:
     assert room.missing(poses) == pytest.approx([98.0 + request.body.front - 100.0, 0.0])
 
 
+@pytest.mark.parametrize("aside", [-9.0, 0.0, 9.0])
+def test_a_straight_does_not_run_over_an_obstacle_that_its_corners_pass(aside: float) -> None:
+    request = PlanRequest(width=24.0)
+    field = shapely.box(0, 0, 100, 60)
+    straight = Manoeuvres(np.array([[20.0, 30.0, 0.0]]), np.zeros((1, 1)), np.full((1, 1), 60.0), 6.0)
+    assert Room(field, request.body).fits(straight).all()
+    pole = shapely.Point(50, 30 + aside).buffer(0.7)
+    assert not Room(field.difference(pole), request.body).fits(straight).any()
+
+
 def test_nothing_to_check_is_no_trouble() -> None:
     room = Room(FIELDS["angled"], PlanRequest(width=6.0).body)
     nothing = some_moves(FIELDS["angled"], 6.0).take(np.zeros(0, dtype=np.intp))
