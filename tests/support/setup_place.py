@@ -75,14 +75,22 @@ class SetupPlace:
         self.until(lambda: not any(one in self.client.nodes for one in nodes))
 
     def newest(self, label: str) -> dict[str, Any] | None:
-        """The control in sight that came last of those with this label, or with this word among its buttons."""
-        for control in reversed(list(self.client.controls.values())):
-            props = control["props"]
-            options = [one.removeprefix("● ") for one in props.get("options", ())]
-            buttons = options if control["type"] == "GuiButtonGroupMessage" else []
-            if props.get("visible", True) and (props.get("label") == label or label in buttons):
-                return control
-        return None
+        """The control that came last of those with this label, or with this word among its buttons.
+
+        While a form is open its own goes before those of other tabs, which may be made anew at any time.
+        """
+        controls = list(reversed(list(self.client.controls.values())))
+        form = next((one["container_uuid"] for one in controls if "g-title" in _content(one)), None)
+        found = [one for one in controls if _is_called(one, label)]
+        return next((one for one in found if self._is_within(one, form)), found[0] if found else None)
+
+    def _is_within(self, control: dict[str, Any], container: str | None) -> bool:
+        while control["container_uuid"] != container:
+            outer = self.client.controls.get(control["container_uuid"])
+            if outer is None:
+                return False
+            control = outer
+        return True
 
     def label(self, beginning: str) -> str:
         """The first label that begins so, once there is one."""
@@ -158,6 +166,17 @@ class SetupPlace:
         made = make()
         assert made is not None
         return made
+
+
+def _content(control: dict[str, Any]) -> str:
+    return str(control["props"].get("content"))
+
+
+def _is_called(control: dict[str, Any], label: str) -> bool:
+    props = control["props"]
+    options = [one.removeprefix("● ") for one in props.get("options", ())]
+    buttons = options if control["type"] == "GuiButtonGroupMessage" else []
+    return bool(props.get("visible", True)) and (props.get("label") == label or label in buttons)
 
 
 @contextmanager
