@@ -17,6 +17,7 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         help="measure speed, growth and delay, as ratios",
         description="Measures the program on this machine. Each bench prints a table, or rows with --json.",
     )
+    parser.set_defaults(func=run)
     benches = parser.add_subparsers(title="benches", metavar="BENCH", required=True)
     for name in BENCHES:
         importlib.import_module(f"guidance_app.bench.{name}").add_parser(benches)

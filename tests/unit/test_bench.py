@@ -14,6 +14,7 @@ from guidance_app.bench.growth import DrivenSession, Growth, Hour, Joining, Stre
 from guidance_app.bench.latency import Drawn, Latency, SteadySource, times_to_drawn
 from guidance_app.bench.rows import Row, shown
 from guidance_app.bench.streams import day_of_work, first_chunks
+from guidance_app.cli import main
 from guidance_app.commands.options import known_errors
 from guidance_app.model import Chunk, LinkStatus
 
@@ -187,3 +188,13 @@ def test_a_recorded_drive_opens_for_review_at_once_and_one_from_elsewhere_too() 
     rows = {row.quantity: row.value for row in review.measured(0.03)}
     assert 0.0 < rows["open, first time, driven here"] < rows["open, first time, from elsewhere"]
     assert rows["open, second time"] < rows["open, first time, from elsewhere"]
+
+
+# --- the command ---------------------------------------------------------------------------------------------------
+
+
+def test_the_command_prints_the_rows_of_a_bench(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bench", "review", "--hours", "0.002", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    assert {row["bench"] for row in rows} == {"review"}
+    assert all(row["value"] > 0 for row in rows)
