@@ -35,13 +35,13 @@ class _Listener:
 
 
 class _Known:
-    """Gives the pose that is known for each measurement's time; None where the smoother has none."""
+    """Gives the pose that is known for each measurement, by its time and arrival; None where the smoother has none."""
 
-    def __init__(self, poses: dict[float, Pose]) -> None:
+    def __init__(self, poses: dict[tuple[float, float], Pose]) -> None:
         self._poses = poses
 
     def step(self, z: Measurement) -> Pose | None:
-        return self._poses.get(z.t)
+        return self._poses.get((z.t, z.arrival))
 
     def begin(self, start: Start) -> None:
         """The smoother has seen the start already."""
@@ -55,4 +55,4 @@ def smoothed_poses(events: Iterable[Event], job: Job, settings: FilterSettings |
     listener = _Listener()
     for _ in processed(events, job, estimator=listener):
         pass
-    return _Known({pose.t: pose for pose in smooth(listener.heard, settings)})
+    return _Known({(pose.t, pose.arrival): pose for pose in smooth(listener.heard, settings)})

@@ -20,9 +20,9 @@ from guidance_app.engine.roll_drives import RollDrives
 from guidance_app.engine.state import why_not
 from guidance_app.engine.work_done import WorkDone
 from guidance_app.estimation.filter import Filter, FilterSettings
-from guidance_app.estimation.filters import make_filter
 from guidance_app.estimation.prediction import Predictor
 from guidance_app.estimation.reference_point import ImplementPoint, measurement_from_fix
+from guidance_app.estimation.restarting import RestartingFilter
 from guidance_app.geodesy import FieldFrame
 from guidance_app.language import sentence
 from guidance_app.model import (
@@ -91,7 +91,7 @@ class Engine:
         self._told = notices
         receiver = job.receiver
         self._filter_name = filter_name or (receiver.filter if receiver.filter_on else OFF)
-        self._filter = estimator or make_filter(self._filter_name, settings)
+        self._filter: Filter = estimator or RestartingFilter(self._filter_name, settings)
         self._hearing = Hearing()
         self._attitudes = Attitudes()
         self._implement = ImplementPoint(job.implement)

@@ -87,12 +87,12 @@ def smooth(measurements: Sequence[Measurement], settings: FilterSettings | None 
 
 
 def _stretches(measurements: Sequence[Measurement]) -> Iterator[list[Measurement]]:
-    """The recording cut at long gaps, without repeated epochs."""
+    """The recording cut at long gaps and where the receiver's clock was set back, without repeated epochs."""
     stretch: list[Measurement] = []
     for z in measurements:
-        if stretch and z.t <= stretch[-1].t:
+        if stretch and z.t == stretch[-1].t:
             continue
-        if stretch and z.t - stretch[-1].t > LONGEST_GAP:
+        if stretch and not 0.0 < z.t - stretch[-1].t <= LONGEST_GAP:
             yield stretch
             stretch = []
         stretch.append(z)

@@ -5,9 +5,11 @@ from dataclasses import fields
 import numpy as np
 import pytest
 from support.drives import FRAME, a_job, path_chunks, up_and_down
+from support.nmea import epoch
 
 from guidance_app.engine import Engine
 from guidance_app.estimation.filters import FILTERS
+from guidance_app.geodesy import FieldFrame
 from guidance_app.model import (
     Chunk,
     Commanded,
@@ -25,6 +27,7 @@ from guidance_app.model import (
 )
 
 CENTIMETRE = 0.01
+METRE = 1.0
 DRIVE = path_chunks(up_and_down())
 
 
@@ -162,3 +165,26 @@ def test_a_failure_is_shown_with_nothing_to_steer_by() -> None:
     assert failed.link.status is LinkStatus.DOWN
     assert failed.pose is None
     assert failed.guidance is None
+
+
+@pytest.mark.parametrize("name", FILTERS)
+def test_a_receiver_that_sets_its_clock_back_is_followed(name: str) -> None:
+    """Receivers that start cold may say any time first; the drive goes on from where the tractor is."""
+    engine = Engine(a_job().model_copy(update={"field": None, "operation": None}), filter_name=name)
+    engine.step(Commanded(0.0, SetWork(down=True)))
+    noon, rate, speed = 43200.0, 5, 5.0 * 1852.0 / 3600.0
+    worked = 0.0
+    for number in range(60 * rate):
+        seconds = number / rate
+        clock = noon + seconds - (30.0 if seconds >= 30.0 else 0.0)
+        engine.step(Chunk(seconds, epoch(clock, east=speed * seconds)))
+        if seconds == 30.0:
+            worked = engine.snapshot.totals.worked
+    last = engine.snapshot
+    assert last.fix is not None
+    assert last.pose is not None
+    assert last.pose.t == last.fix.t
+    east, _ = FieldFrame(52.0, 8.0).east_north_from_degrees(last.fix.latitude_deg, last.fix.longitude_deg)
+    assert abs(east - last.pose.east) < METRE
+    assert last.pose.heading_known
+    assert last.totals.worked > 1.8 * worked > 0.0
