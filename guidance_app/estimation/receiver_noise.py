@@ -1,10 +1,8 @@
 """How far a fix of each quality may be off: white scatter, and the slow error that no averaging removes.
 
-The numbers are those of the sources' own scatter: RTK by its data sheets, RTK float by a car's drive beside a reference
-(37 cm an axis for minutes), autonomous by the daily drift that users see between neighbouring passes. DGPS is that of
-Inoue et al.: drift of 16 cm over minutes, and steps of 25 cm that stay for some seconds. Neither state nor drift knows
-such steps; a scatter of 10 instead of the fixes' own 2 cm takes them up: on their field test 18 instead of 21 cm RMS,
-4.3 instead of 5.0 within a pass, and over all scenarios with such errors a calmer heading (1.5 instead of 1.8 degrees).
+The numbers are those of the sources' own scatter: RTK by its data sheets, DGPS by Inoue et al. (steps of 25 cm that
+stay, drift of 16 cm over minutes), RTK float by a car's drive beside a reference (37 cm an axis for minutes),
+autonomous by the daily drift that users see between neighbouring passes.
 """
 
 import math
@@ -30,8 +28,8 @@ class ReceiverNoise:
 _BY_QUALITY = {
     FixQuality.NONE: ReceiverNoise(1.0, 5.0, 60.0),
     FixQuality.AUTONOMOUS: ReceiverNoise(0.03, 0.7, 1000.0),
-    FixQuality.DGPS: ReceiverNoise(0.1, 0.25, 40.0),
-    FixQuality.PPS: ReceiverNoise(0.1, 0.25, 40.0),
+    FixQuality.DGPS: ReceiverNoise(0.03, 0.18, 70.0),
+    FixQuality.PPS: ReceiverNoise(0.03, 0.18, 70.0),
     FixQuality.RTK_FIXED: ReceiverNoise(0.008, 0.0, 1.0),
     FixQuality.RTK_FLOAT: ReceiverNoise(0.03, 0.38, 2000.0),
     FixQuality.DEAD_RECKONING: ReceiverNoise(0.3, 3.0, 60.0),
