@@ -104,7 +104,9 @@ class OnField:
 
     @property
     def _now(self) -> _Wishes:
-        name = self._asked.field
+        return self._on(self._asked.field)
+
+    def _on(self, name: str) -> _Wishes:
         if name not in self._wishes:
             self._wishes[name] = self._begun(name)
         return self._wishes[name]
@@ -127,9 +129,9 @@ class OnField:
             self._pickings[name] = picking_of(self._documents[name])
         return self._pickings.get(name)
 
-    def values(self) -> dict[str, Any]:
-        """The members of the operation that are chosen here."""
-        now, document = self._now, self._documents.get(self._asked.field)
+    def values(self, asked: Asked) -> dict[str, Any]:
+        """The members of the operation that are chosen here; ``asked`` as the form is now, not as it was drawn last."""
+        now, document = self._on(asked.field), self._documents.get(asked.field)
         one_by_one = now.exclusions == ONE_BY_ONE and document is not None
         known = list(self._initial.get("passable", ()))
         return {
@@ -138,9 +140,9 @@ class OnField:
             "passable": places_in(document, now.passable, known) if one_by_one and document is not None else [],
         }
 
-    def complete(self) -> bool:
+    def complete(self, asked: Asked) -> bool:
         """False when an edge is wanted and none is tapped, which then stands in the form."""
-        missing = self._asked.edge and self._now.edge_at is None
+        missing = asked.edge and self._on(asked.field).edge_at is None
         self._wrong = self._words("No edge is chosen yet: tap one on the map.") if missing else ""
         if missing:
             self._touched()

@@ -264,7 +264,8 @@ class OperationForm:
     def _read(self, instead: Mapping[str, str]) -> Operation | None:
         entries = self._form.read(instead)
         options = None if self._options is None else self._options.read()
-        placed = self._on_field.complete()
+        asked = self._asked(Method(self._form.draft["method"]))
+        placed = self._on_field.complete(asked)
         if entries is None or not placed or (self._options is not None and options is None):
             return None
         wrong = {
@@ -279,7 +280,7 @@ class OperationForm:
         values["laps"] = entries.laps if entries.headland == "laps" else None
         values["turning_space"] = entries.turning_space if entries.headland == "space" else None
         values["options"] = {} if options is None else options.model_dump()
-        values |= self._on_field.values()
+        values |= self._on_field.values(asked)
         if entries.direction is Direction.EDGE and values["edge_at"] is None:
             values["direction"] = Direction.LONGEST_EDGE  # of a method that asks for no direction
         return Operation.model_validate(values)
