@@ -56,7 +56,8 @@ class Hands:
     ``later`` does long work on another thread; what it raises with a sentence is shown to this client. ``tell`` shows
     words for a few seconds, ``bad`` ones until they are closed. ``go`` changes between driving and setting up;
     ``renew`` makes the panels of all clients anew (another language, other units). ``soon`` shows this client's panels
-    at the next redraw instead of within a quarter of a second.
+    at the next redraw instead of within a quarter of a second. The redraw calls what ``at_leaving`` is given once,
+    when these panels are left for others or their browser has gone.
     """
 
     post: Callable[[Command], None]
@@ -74,6 +75,7 @@ class Hands:
     go: Callable[[Place], None]
     renew: Callable[[], None]
     soon: Callable[[], None]
+    at_leaving: Callable[[Callable[[], None]], None]
     wheel: WheelHands
     """``post`` of a browser without the wheel does nothing and says so; what begins or ends a drive asks ``mine``."""
 

@@ -45,6 +45,7 @@ class Pages:
         self._page: Page | None = None
         self._wished: MakePage | None = None
         self._lock = threading.Lock()
+        hands.at_leaving(self._leave)
 
     def turn(self, make: MakePage) -> None:
         """Opens another page at the next redraw."""
@@ -61,10 +62,14 @@ class Pages:
         if self._page is not None:
             self._page.show(desk)
 
-    def _open(self, make: MakePage) -> None:
+    def _leave(self) -> None:
         leave = getattr(self._page, "close", None)
+        self._page = None
         if leave is not None:
             leave()
+
+    def _open(self, make: MakePage) -> None:
+        self._leave()
         if self._inner is not None:
             self._inner.remove()
         with self._outer:

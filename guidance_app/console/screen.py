@@ -54,6 +54,7 @@ class _Client:
         self.wished_view: ViewMode | None = None
         self.wished_back = False
         self.panels_due = 0.0
+        self.leaving: list[Callable[[], None]] = []
         self.failed = False
 
     def again(self, scene: ClientScene) -> None:
@@ -64,6 +65,16 @@ class _Client:
             self.place = None
         else:
             self.wished_view = ViewMode.WHOLE_FIELD
+
+    def leave_panels(self) -> None:
+        """Lets go of what the panels hold outside themselves: what they listen to, the files they await."""
+        leaving, self.leaving = self.leaving, []
+        self.panels = []
+        for leave in leaving:
+            try:
+                leave()
+            except Exception:
+                log.exception("a panel could not be left in good order")
 
     def take_wishes(self) -> None:
         """Does what fingers have asked for since the last redraw."""
@@ -90,6 +101,7 @@ class Screen:
         self._ground = Ground(server, self._job, palette_of(night=self._night))
         self._clients: dict[int, _Client] = {}
         self._arrived: list[viser.ClientHandle] = []
+        self._gone: list[_Client] = []
         self._helm = Helm(time.monotonic)
         self._lock = threading.Lock()
         self._stop = threading.Event()
@@ -137,7 +149,10 @@ class Screen:
 
     def _forget(self, number: int) -> None:
         """A browser has gone; the drive goes on as it was."""
-        self._clients.pop(number, None)
+        gone = self._clients.pop(number, None)
+        if gone is not None:
+            with self._lock:
+                self._gone.append(gone)
         self._helm.left(number)
 
     # --- the loop --------------------------------------------------------------------------------------------------
@@ -207,6 +222,9 @@ class Screen:
     def _welcome(self) -> None:
         with self._lock:
             arrived, self._arrived = self._arrived, []
+            gone, self._gone = self._gone, []
+        for client in gone:
+            client.leave_panels()
         for handle in arrived:
             try:
                 scene = ClientScene(handle, self._job, self._models, palette_of(night=self._night))
@@ -263,6 +281,9 @@ class Screen:
         def soon() -> None:
             client.panels_due = 0.0
 
+        def at_leaving(leave: Callable[[], None]) -> None:
+            client.leaving.append(leave)
+
         def desk() -> Desk:
             snapshot = self._session.snapshot()
             return self._desk(client, snapshot, shown_instant(self._session, snapshot))
@@ -293,6 +314,7 @@ class Screen:
             go=go,
             renew=self._renew,
             soon=soon,
+            at_leaving=at_leaving,
             wheel=wheel,
         )
 
@@ -325,7 +347,7 @@ class Screen:
         """
         client.place = place
         client.wished_view = ViewMode.WHOLE_FIELD if place is Place.SETUP else ViewMode.DRIVER
-        client.panels = []
+        client.leave_panels()
         client.sketch.clear()
         gui, hands = client.handle.gui, self._hands(client)
         gui.reset()

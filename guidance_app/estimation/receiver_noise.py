@@ -4,8 +4,9 @@ The numbers are those of the sources' own scatter: RTK by its data sheets, DGPS 
 stay, drift of 16 cm over minutes), RTK float by a car's drive beside a reference (37 cm an axis for minutes),
 autonomous by the daily drift that users see between neighbouring passes.
 
-A wider scatter for DGPS (10 cm, drift of 25 cm over 40 s) would take up those steps better, 4.2 instead of 4.5 cm within
-a pass of their test, but it lets the estimate leave a real tractor's log by 2.5 m where it backs up (0.4 m as it is).
+A wider scatter for DGPS (10 cm, drift of 25 cm over 40 s) would take up those steps better, 4.2 instead of 4.5 cm
+within a pass of their test, but with it the estimate leaves a real tractor's log by 2.5 m where it backs up (0.4 m as
+it is).
 """
 
 import math

@@ -68,3 +68,17 @@ def test_to_the_setup_and_back_without_touching_the_drive(server: viser.ViserSer
         place.press("Back to the drive")
         place.until(lambda: place.newest("Skip"))
     assert session.commands == []
+
+
+def test_panels_that_are_left_await_no_file_any_more(place: SetupPlace) -> None:
+    token = place.token("each of its time logs becomes a recording")
+    assert place.house.files.taker(token)
+    place.house.drive(load_job(place.store, "Round trip"))
+    place.press("Back to the drive")
+    place.until(lambda: place.house.files.taker(token) is None)
+
+
+def test_a_browser_that_has_gone_awaits_no_file_any_more(place: SetupPlace) -> None:
+    token = place.token("each of its time logs becomes a recording")
+    place.client.close()
+    place.until(lambda: place.house.files.taker(token) is None)
