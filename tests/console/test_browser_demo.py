@@ -213,15 +213,18 @@ def test_a_frozen_command_says_no_data_within_a_second_and_both_bar_and_scene_co
     page.wait_for_function(f"(stood) => Math.hypot(...{world}.map((v, k) => v - stood[k])) > 1", arg=stood)
 
 
-def test_the_job_half_done_is_drawn_at_three_sizes(demo: Demo, open_page: OpenPage, tmp_path: Path) -> None:
+def test_the_job_half_done_is_drawn_at_three_sizes(demo: Demo, page: Page, open_page: OpenPage, tmp_path: Path) -> None:
+    """The first page has the wheel and holds the recording; those of the three sizes follow."""
+    hold(page)
+    second = wind_to(page, IN_THE_MIDDLE)
     for size in SIZES:
-        page = opened(demo, open_page, size=size)
-        if page.get_by_text("Replay", exact=True).is_hidden():
-            page.get_by_text(re.compile("^Work · ")).tap()
-        hold(page)
-        wind_to(page, IN_THE_MIDDLE)
-        page.evaluate(PICTURES, 5)
-        picture = page.screenshot(path=tmp_path / f"demo-{size[0]}x{size[1]}.png")
+        sized = opened(demo, open_page, size=size)
+        if sized.get_by_text("Replay", exact=True).is_hidden():
+            sized.get_by_text(re.compile("^Work · ")).tap()
+        sized.get_by_text("Replay", exact=True).tap()
+        expect(slider(sized).get_by_role("slider")).to_have_attribute("aria-valuenow", str(second))
+        sized.evaluate(PICTURES, 5)
+        picture = sized.screenshot(path=tmp_path / f"demo-{size[0]}x{size[1]}.png")
         assert len(picture) > 20_000, "a picture of a field in work is not so plain"
-        save_screenshot(page, f"demo-{size[0]}x{size[1]}")
-        page.close()
+        save_screenshot(sized, f"demo-{size[0]}x{size[1]}")
+        sized.close()
