@@ -19,11 +19,24 @@ def test_two_programs_that_count_in_one_document_lose_no_step(tmp_path: Path) ->
     paths = os.pathsep.join([str(TESTS), str(TESTS.parent)])
     command = [sys.executable, str(TESTS / "support" / "counting_writer.py"), str(tmp_path), str(TIMES)]
     programs = [
-        subprocess.Popen([*command, name], env={**os.environ, "PYTHONPATH": paths}, stdout=subprocess.PIPE, text=True)
+        subprocess.Popen(
+            [*command, name],
+            env={**os.environ, "PYTHONPATH": paths},
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
         for name in ("left", "right")
     ]
-    conflicts = [int(program.communicate(timeout=60)[0]) for program in programs]
+    for program in programs:
+        assert program.stdout is not None
+        assert program.stdout.readline() == "ready\n"
+    for program in programs:
+        assert program.stdin is not None
+        program.stdin.write("begin\n")
+        program.stdin.flush()
+    counted = [program.communicate()[0].split() for program in programs]
     assert [program.returncode for program in programs] == [0, 0]
     notes = Store(tmp_path).load(FieldDocument, "Counter").document.notes
-    assert int(notes.split()[0]) == 2 * TIMES
-    assert sum(conflicts) > 0, "the programs never met, so nothing was tested"
+    assert int(notes.split()[0]) == sum(int(steps) for steps, _ in counted)
+    assert sum(int(conflicts) for _, conflicts in counted) > 0, "the programs never met, so nothing was tested"

@@ -1,6 +1,7 @@
 """A program for the two-consoles test: counts up in one document, again whenever the other console was faster.
 
-Usage: python counting_writer.py FOLDER TIMES NAME. Prints how often it had to do it again.
+Usage: python counting_writer.py FOLDER TIMES NAME. Says that it is ready, begins at a line of input, and counts so many
+times and on until the other was faster once, MOST times at most. Prints how often it counted and had to do it again.
 """
 
 import sys
@@ -8,6 +9,8 @@ from pathlib import Path
 
 from guidance_app.documents import FieldDocument
 from guidance_app.store import Store, StoreConflictError
+
+MOST = 5000
 
 
 def count_up(store: Store, name: str) -> int:
@@ -27,4 +30,11 @@ def count_up(store: Store, name: str) -> int:
 
 if __name__ == "__main__":
     own = Store(Path(sys.argv[1]))
-    sys.stdout.write(str(sum(count_up(own, sys.argv[3]) for _ in range(int(sys.argv[2])))))
+    sys.stdout.write("ready\n")
+    sys.stdout.flush()
+    sys.stdin.readline()
+    steps = conflicts_met = 0
+    while steps < int(sys.argv[2]) or (conflicts_met == 0 and steps < MOST):
+        conflicts_met += count_up(own, sys.argv[3])
+        steps += 1
+    sys.stdout.write(f"{steps} {conflicts_met}\n")

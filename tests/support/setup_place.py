@@ -18,7 +18,7 @@ from guidance_app.language import words_for
 from guidance_app.runtime import SessionManager
 from guidance_app.sources.ports import ListPorts, found_ports
 from guidance_app.store import Store
-from support.viser_client import ViserClient, viser_client
+from support.viser_client import Redraws, ViserClient, viser_client
 
 __all__ = ["SetupPlace", "setup_place"]
 
@@ -27,10 +27,14 @@ SOON_S = 0.03
 
 
 class SetupPlace:
-    """One console and one client. Everything waits until it has happened; ``each_redraw`` is called before each."""
+    """One console and one client. Everything waits until it has happened; ``each_redraw`` is called before each.
 
-    def __init__(self, house: House, screen: Screen, client: ViserClient) -> None:
+    What the client knows is always a whole redraw, so a form that is seen has all its buttons.
+    """
+
+    def __init__(self, server: viser.ViserServer, house: House, screen: Screen, client: ViserClient) -> None:
         self.house = house
+        self._redraws = Redraws(server, screen.tick)
         self.screen = screen
         self.client = client
         self.each_redraw: Callable[[], None] = lambda: None
@@ -46,7 +50,7 @@ class SetupPlace:
         """Redraws until it is so."""
         for _ in range(MOST_REDRAWS):
             self.each_redraw()
-            self.screen.tick()
+            self._redraws.next(self.client)
             if self.client.soon(true, SOON_S):
                 return
         pytest.fail(f"it did not happen; told: {self.told()}; the panels say: {self.client.words()}")
@@ -196,7 +200,7 @@ def setup_place(
     screen.attach()
     try:
         with viser_client(server) as client:
-            place = SetupPlace(house, screen, client)
+            place = SetupPlace(server, house, screen, client)
             if session is None and folder is not None:
                 place.until(place.is_open)
             yield place

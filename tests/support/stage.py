@@ -10,7 +10,7 @@ import viser
 from guidance_app.console.house import House
 from guidance_app.console.screen import Screen
 from guidance_app.runtime import SessionManager
-from support.viser_client import ViserClient, viser_client
+from support.viser_client import Redraws, ViserClient, viser_client
 
 __all__ = ["Stage", "running_viser", "server", "visible"]
 
@@ -26,6 +26,7 @@ class Stage:
         self.session = session
         self.screen = Screen(server, House(SessionManager(session)))
         self.screen.attach()
+        self._redraws = Redraws(server, self.screen.tick)
 
     @contextmanager
     def client(self, **window: int) -> Iterator[ViserClient]:
@@ -46,10 +47,9 @@ class Stage:
         """Redraws at the same instant until nothing new comes."""
         self.tick_until(client, lambda: client.place_of("/w/here"))
         before = -1
-        while client.bytes != before:
-            before = client.bytes
-            self.screen.tick()
-            client.soon(lambda seen=before: client.bytes != seen, SOON_S)
+        while len(client.messages) != before:
+            before = len(client.messages)
+            self._redraws.next(client)
 
 
 @contextmanager

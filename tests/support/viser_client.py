@@ -17,9 +17,10 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 from websockets.typing import Subprotocol
 
-__all__ = ["ViserClient", "viser_client"]
+__all__ = ["Redraws", "ViserClient", "viser_client"]
 
 PATIENCE_S = 40.0
+MARK = "/redraws"
 
 
 def _says(option: str, words: str) -> bool:
@@ -40,6 +41,8 @@ class ViserClient:
         )
         self._heard = threading.Condition()
         self.bytes = 0
+        self.redraws = 0
+        self.gone = False
         self.messages: list[dict[str, Any]] = []
         self.nodes: dict[str, dict[str, Any]] = {}
         self.controls: dict[str, dict[str, Any]] = {}
@@ -65,9 +68,15 @@ class ViserClient:
                     self._heard.notify_all()
         except ConnectionClosed:
             pass
+        with self._heard:
+            self.gone = True
+            self._heard.notify_all()
 
     def _take(self, message: dict[str, Any]) -> None:
         kind = message["type"]
+        if message.get("name") == MARK:
+            self.redraws = max(self.redraws, int(message.get("position", (0,))[0]))
+            return
         self.messages.append(message)
         if kind == "ReplayDoneMessage":
             self.replayed = True
@@ -191,3 +200,19 @@ def viser_client(server: viser.ViserServer, **window: int) -> Iterator[ViserClie
         yield client
     finally:
         client.close()
+
+
+class Redraws:
+    """Redraws that a client is known to have heard whole: viser sends in order, and each ends with a mark."""
+
+    def __init__(self, server: viser.ViserServer, tick: Callable[[], None]) -> None:
+        self._scene = server.scene
+        self._tick = tick
+        self._count = 0
+
+    def next(self, client: ViserClient) -> None:
+        """Redraws, and waits until the client has all of it, or has gone."""
+        self._tick()
+        self._count += 1
+        self._scene.add_frame(MARK, show_axes=False, position=(float(self._count), 0.0, 0.0))
+        client.until(lambda: client.redraws >= self._count or client.gone)
