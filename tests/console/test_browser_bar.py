@@ -3,7 +3,6 @@
 import functools
 import itertools
 import re
-import statistics
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
@@ -323,18 +322,12 @@ def test_a_browser_that_cannot_draw_from_a_worker_draws_on_the_page(drive: Drive
     expect_lit(page, "--yellow", left=False, right=True)
 
 
-# --- how fast ------------------------------------------------------------------------------------------------------
-
-MEDIAN_LIMIT_MS = 100.0
-"""Wide, because a test shares its machine; the bench measures what a quiet one does."""
+# --- with others ---------------------------------------------------------------------------------------------------
 
 
-def test_a_fix_is_drawn_at_once_with_three_clients(drive: Drive, page: Page) -> None:
+def test_every_fix_reaches_the_page_in_order_beside_two_more_clients(drive: Drive, page: Page) -> None:
     with live_socket(drive.console), live_socket(drive.console):
         page.evaluate("window.__lightbar.timings.length = 0")
         page.wait_for_function("new Set(window.__lightbar.timings.map((timing) => timing.sequence)).size > 20")
-        timings = page.evaluate("window.__lightbar.timings")
-    first_drawn: dict[int, float] = {}
-    for timing in timings:
-        first_drawn.setdefault(timing["sequence"], timing["age"] + timing["drawn"] - timing["sent"])
-    assert statistics.median(first_drawn.values()) < MEDIAN_LIMIT_MS
+        drawn = page.evaluate("window.__lightbar.timings.map((timing) => timing.sequence)")
+    assert drawn == sorted(drawn)

@@ -27,7 +27,7 @@ pytestmark = pytest.mark.browser
 
 MILLIMETRE = 1e-3
 SILENT_WITHIN_MS = 1000.0
-END_S = 20.0
+END_S = 60.0
 IN_THE_MIDDLE, NEAR_THE_START = 0.42, 0.18
 """Where the slider is tapped, as a part of its length: in the middle of a pass, also some seconds beside it."""
 
@@ -118,7 +118,7 @@ def demo() -> Iterator[Demo]:
 def opened(demo: Demo, open_page: OpenPage, size: tuple[int, int] = TABLET, script: str = "") -> Page:
     """The page, once the scene is there and viser's remark about software drawing is away."""
     page = open_page(demo.address, size=size, touch=True, script=script, allow=LOST)
-    page.wait_for_function(SCENE, timeout=40_000)
+    page.wait_for_function(SCENE)
     page.add_style_tag(content=".mantine-Notifications-root{display:none}")
     return page
 

@@ -16,8 +16,8 @@ LOST = (r"ERR_CONNECTION_REFUSED", r"ERR_CONNECTION_RESET", r"ERR_EMPTY_RESPONSE
 UNAUTHORISED = r"status of 401"
 
 
-def in_state(page: Page, state: str, timeout_s: float = 15.0) -> None:
-    expect(page.locator("#lightbar")).to_have_attribute("data-state", state, timeout=timeout_s * 1000)
+def in_state(page: Page, state: str) -> None:
+    expect(page.locator("#lightbar")).to_have_attribute("data-state", state)
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +55,7 @@ def test_a_console_that_was_started_anew_gets_a_fresh_page(process: ConsoleProce
     process.end()
     in_state(page, "silent")
     with console_process(process.port):
-        page.wait_for_function("window.older === undefined && window.__lightbar?.state === 'guide'", timeout=30_000)
+        page.wait_for_function("window.older === undefined && window.__lightbar?.state === 'guide'")
         page.wait_for_selector("#root canvas")
 
 

@@ -19,7 +19,7 @@ def test_a_drive_killed_over_and_over_loses_nothing_that_was_safe(tmp_path: Path
         env={**os.environ, "PYTHONPATH": paths},
         capture_output=True,
         text=True,
-        timeout=200,
+        timeout=280,
         check=False,
     )
     assert done.returncode == 0, done.stderr

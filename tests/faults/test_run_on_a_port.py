@@ -21,8 +21,8 @@ from support.nmea import epoch, sentence
 from guidance_app.commands import run
 
 NOON = 43200.0
-START_S = 60.0
-END_S = 20.0
+START_S = 120.0
+END_S = 60.0
 CORRECTIONS = b"".join(FRAMES)
 PAGE_S = 30.0
 

@@ -18,7 +18,7 @@ def test_a_writer_killed_500_times_never_loses_an_acknowledged_document(tmp_path
         env={**os.environ, "PYTHONPATH": paths},
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=250,
         check=False,
     )
     assert done.returncode == 0, done.stderr

@@ -22,7 +22,7 @@ from guidance_app.view.links import beside_notices
 from guidance_app.view.status import link_words
 
 NOON = 43200.0
-PATIENCE_S = 15.0
+PATIENCE_S = 60.0
 QUICK = Pauses(first=0.02, longest=0.1)
 
 

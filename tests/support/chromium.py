@@ -47,7 +47,7 @@ for (const kind of [self.WebGLRenderingContext, self.WebGL2RenderingContext]) {
 
 OpenPage = Callable[..., Page]
 
-PATIENCE_MS = 20_000
+PATIENCE_MS = 60_000
 expect.set_options(timeout=PATIENCE_MS)
 
 

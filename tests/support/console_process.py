@@ -12,7 +12,7 @@ from pathlib import Path
 __all__ = ["ConsoleProcess", "console_process"]
 
 TESTS = Path(__file__).parent.parent
-START_S = 30.0
+START_S = 60.0
 
 
 class ConsoleProcess:

@@ -2,9 +2,9 @@
 
 Usage: python killed_drive.py FOLDER KILLS SLOW_KILLS SEED. A child process drives a recorded session fifty times faster
 than real time and says through a pipe what the source gave and what the recorder holds as safe; it is killed with
-SIGKILL after a random time. Then the recording must open, hold all that was safe and, with the recorder's own pace
-(the slow kills), all that was given a second before; what it held before must stand unchanged, and the next start must
-be able to go on. Prints one line of JSON.
+SIGKILL after a random number of chunks, or with the recorder's own pace after a random time (the slow kills). Then the
+recording must open, hold all that was safe and, after a slow kill, all that was given a second before; what it held
+before must stand unchanged, and the next start must be able to go on. Prints one line of JSON.
 """
 
 import json
@@ -17,6 +17,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from guidance_app.engine import Engine
@@ -32,11 +33,24 @@ from support.drives import a_job, path_chunks, up_and_down
 SPEED = 50.0
 FAST_FLUSH = 0.01
 LAST_SECOND = 1.0
+LOOK = 0.02
+MOST_CHUNKS = 150
 LONG_ENOUGH = 6.0
 """A drive that was cut off sooner is not offered again."""
 WORD = struct.Struct("!cd")
 DRIVES = 12
 """Kills of one drive before another is begun, so that going on stays quick."""
+
+
+@dataclass(frozen=True, slots=True)
+class Killing:
+    """When the child is killed: after so many chunks, and not before so many seconds."""
+
+    chunks: int
+    seconds: float = 0.0
+
+    def is_due(self, chunks: int, seconds: float) -> bool:
+        return chunks >= self.chunks and seconds >= self.seconds
 
 
 class Tractor:
@@ -89,8 +103,8 @@ def drive_on(data: Path, chunks: list[Chunk], pipe: int, flush_every: float) -> 
             os.write(pipe, WORD.pack(b"f", said))
 
 
-def killed_once(data: Path, chunks: list[Chunk], delay: float, flush_every: float) -> tuple[float, float]:
-    """Starts a child, kills it ``delay`` seconds after its first word; when it was safe to, and given to before."""
+def killed_once(data: Path, chunks: list[Chunk], after: Killing, flush_every: float) -> tuple[float, float]:
+    """Starts a child and kills it; when it was safe to, and what it was given to a second before."""
     reading, writing = os.pipe()
     child = os.fork()
     if child == 0:
@@ -101,23 +115,22 @@ def killed_once(data: Path, chunks: list[Chunk], delay: float, flush_every: floa
             os._exit(1)
     os.close(writing)
     given: list[tuple[float, float]] = []
-    safe, held, deadline = 0.0, b"", None
-    while deadline is None or time.monotonic() < deadline:
-        wait = None if deadline is None else max(deadline - time.monotonic(), 0.0)
-        if not select.select([reading], [], [], wait)[0]:
-            break
+    safe, held, began = 0.0, b"", None
+    while began is None or not after.is_due(len(given), time.monotonic() - began):
+        if began is not None and not select.select([reading], [], [], LOOK)[0]:
+            continue
         new = os.read(reading, 65536)
         assert new, "the child ended by itself"
         now = time.monotonic()
-        deadline = now + delay if deadline is None else deadline
+        began = now if began is None else began
         held += new
-        for place in range(0, len(held) - WORD.size + 1, WORD.size):
-            kind, arrival = WORD.unpack_from(held, place)
+        whole = len(held) // WORD.size * WORD.size
+        for kind, arrival in WORD.iter_unpack(held[:whole]):
             if kind == b"f":
                 safe = max(safe, arrival)
             else:
                 given.append((now, arrival))
-        held = held[len(held) - len(held) % WORD.size :]
+        held = held[whole:]
     killed = time.monotonic()
     os.kill(child, signal.SIGKILL)
     os.waitpid(child, 0)
@@ -157,8 +170,8 @@ def main(folder: str, kills: str, slow_kills: str, seed: str) -> None:
         slow = number >= int(kills)
         if number % DRIVES == 0 and number:
             finish_recording(list_recordings(data)[0].path)
-        delay = 1.2 + dice.random() if slow else dice.random() * 0.3
-        safe, given = killed_once(data, chunks, delay, FLUSH_EVERY if slow else FAST_FLUSH)
+        after = Killing(1, 1.2 + dice.random()) if slow else Killing(dice.randint(1, MOST_CHUNKS))
+        safe, given = killed_once(data, chunks, after, FLUSH_EVERY if slow else FAST_FLUSH)
         listed = list_recordings(data)[0]
         before, wrong = checked(listed.path, known.get(listed.path, []), safe, given if slow else 0.0)
         known[listed.path] = before

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 __all__ = ["PATIENCE_S", "Server", "free_port", "server"]
 
-PATIENCE_S = 10.0
+PATIENCE_S = 60.0
 
 
 def free_port(kind: socket.SocketKind = socket.SOCK_STREAM) -> int:

@@ -1,7 +1,5 @@
 """The rest of a plan, planned again through the engine: what is done stays, and nothing jumps while working."""
 
-import time
-
 import pytest
 from support.drives import FRAME, a_job, path_chunks, up_and_down
 
@@ -20,8 +18,6 @@ from guidance_app.model import (
 )
 
 CENTIMETRE = 0.01
-LONGEST_S = 0.25
-"""Five times what a plan of the rest may take, on a machine that others use too."""
 
 
 def passes_ahead(snapshot: Snapshot) -> list[int]:
@@ -77,9 +73,7 @@ def test_the_rest_keeps_what_is_done_and_the_pass_being_worked(under_way: Engine
     was = engine.snapshot
     assert was.working
     assert was.guidance is not None
-    began = time.perf_counter()
     now = told(engine, ReplanRest())
-    assert time.perf_counter() - began < LONGEST_S
     assert now.guidance is not None
     assert not now.notices or now.notices == was.notices
     assert now.guidance.target.number == was.guidance.target.number

@@ -18,7 +18,7 @@ def evaluate(*arguments: str) -> "subprocess.CompletedProcess[str]":
         [sys.executable, "-m", "guidance_app", "evaluate", *arguments],
         capture_output=True,
         text=True,
-        timeout=200,
+        timeout=280,
         check=False,
     )
 

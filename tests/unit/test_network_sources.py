@@ -5,7 +5,7 @@ import threading
 import time
 
 import pytest
-from support.cables import reading
+from support.cables import PATIENCE_S, reading
 from support.nmea import epoch
 from support.servers import free_port, server
 
@@ -15,7 +15,6 @@ from guidance_app.sources.kept import Kept, LinkError, Pauses
 from guidance_app.sources.merged import Merged
 
 NOON = 43200.0
-ENDS_WITHIN_S = 1.0
 QUICK = Pauses(first=0.01, longest=0.05)
 
 
@@ -79,7 +78,7 @@ def test_tcp_reads_and_connects_again_when_the_other_side_closes() -> None:
             f"up: 127.0.0.1:{receiver.port}",
             f"down: 127.0.0.1:{receiver.port} has closed the connection",
         ]
-        assert heard.stop() < ENDS_WITHIN_S
+        heard.stop()
 
 
 def test_tcp_says_once_that_nobody_listens_and_goes_on_trying() -> None:
@@ -108,7 +107,7 @@ def test_a_dial_that_nobody_answers_ends_when_it_is_told_to() -> None:
     start = time.monotonic()
     with pytest.raises(LinkError):
         addresses.dial("192.0.2.1", 2000, stop)
-    assert time.monotonic() - start < ENDS_WITHIN_S
+    assert time.monotonic() - start < addresses.DIAL_S, "it has waited for the dial to end by itself"
 
 
 def test_a_silent_connection_is_taken_for_dead(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -133,7 +132,7 @@ def test_what_is_written_to_tcp_arrives() -> None:
         with reading(source) as heard:
             heard.wait(lambda one: bool(one.told))
             assert source.write(b"\xd3corrections")
-            assert said.wait(5.0)
+            assert said.wait(PATIENCE_S)
     assert came == [b"\xd3corrections"]
 
 
@@ -148,7 +147,7 @@ def test_udp_takes_text_and_leaves_binary_frames_out() -> None:
         heard.wait(lambda one: len(one.data) == len(epoch(NOON)) * 2)
         assert heard.data == epoch(NOON) + epoch(NOON + 1)
         assert not source.write(b"to whom?")
-        assert heard.stop() < ENDS_WITHIN_S
+        heard.stop()
 
 
 def test_udp_says_who_is_in_the_way() -> None:
@@ -218,7 +217,7 @@ def test_two_sources_are_one_whose_times_never_step_back() -> None:
         of_sensor = [one for one in heard.events if one.link == ATTITUDE]
         assert len(of_sensor) == 201
         assert [one.data for one in of_sensor if isinstance(one, Chunk)] == [b"roll"] * 200
-        assert heard.stop() < ENDS_WITHIN_S
+        heard.stop()
     assert threading.active_count() == threads
 
 

@@ -11,7 +11,7 @@ from guidance_app.model import Chunk, LinkStatus, SetLookAhead, SetWork, Snapsho
 from guidance_app.runtime import LiveSession, ReplaySession
 from guidance_app.sources.file import FileLog, load_log
 
-PATIENCE = 20.0
+PATIENCE = 60.0
 
 
 @pytest.fixture(scope="module")

@@ -253,7 +253,7 @@ COMMAND = (sys.executable, "-m", "guidance_app", "tune")
 
 
 def tune(*arguments: str) -> "subprocess.CompletedProcess[str]":
-    return subprocess.run([*COMMAND, *arguments], capture_output=True, text=True, timeout=100, check=False)
+    return subprocess.run([*COMMAND, *arguments], capture_output=True, text=True, timeout=250, check=False)
 
 
 def test_ctrl_c_keeps_the_best_so_far(tmp_path: Path) -> None:
@@ -265,7 +265,7 @@ def test_ctrl_c_keeps_the_best_so_far(tmp_path: Path) -> None:
         assert process.stderr is not None
         assert "best" in process.stderr.readline()
         process.send_signal(signal.SIGINT)
-        printed, _ = process.communicate(timeout=60)
+        printed, _ = process.communicate(timeout=250)
     assert process.returncode == 0
     assert "stopped after" in printed
     settings = FilterSettings.model_validate_json(out.read_text())
