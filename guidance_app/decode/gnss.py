@@ -36,31 +36,19 @@ _RANK_OF_MODE = {letter: rank for rank, letter in enumerate(QUALITY_OF_MODE)}
 
 def read_gga(fields: Fields) -> Sentence:
     """Position, quality, satellites, HDOP, altitude. An empty quality stays None: somebody else must vouch for it."""
-    position = fields.position()
-    quality = quality_of_digit(fields, "gps_qual")
-    return Sentence(
-        kind=fields.kind,
-        time=fields.time("timestamp"),
-        valid=None if quality is None else quality is not FixQuality.NONE,
-        latitude_deg=position and position[0],
-        longitude_deg=position and position[1],
-        cell=position and position[2],
-        quality=quality,
-        satellites=fields.count("num_sats"),
-        hdop=fields.between("horizontal_dil", 0.0, 9999.99),
-        altitude=fields.number("altitude"),
-        geoid_separation=fields.number("geo_sep"),
-        correction_age=fields.between("age_gps_data", 0.0, 1e6),
-    )
+    return _fix(fields, quality_of_digit(fields, "gps_qual"), "horizontal_dil")
 
 
 def read_gns(fields: Fields) -> Sentence:
     """As GGA, with one mode letter for each constellation."""
-    position = fields.position()
     letters = fields.text("mode_indicator")
     if any(letter not in _RANK_OF_MODE for letter in letters):
         raise DecodeError(f"bad field in {fields.kind}")
-    quality = QUALITY_OF_MODE[max(letters, key=_RANK_OF_MODE.__getitem__)] if letters else None
+    return _fix(fields, QUALITY_OF_MODE[max(letters, key=_RANK_OF_MODE.__getitem__)] if letters else None, "hdop")
+
+
+def _fix(fields: Fields, quality: FixQuality | None, hdop: str) -> Sentence:
+    position = fields.position()
     return Sentence(
         kind=fields.kind,
         time=fields.time("timestamp"),
@@ -70,7 +58,7 @@ def read_gns(fields: Fields) -> Sentence:
         cell=position and position[2],
         quality=quality,
         satellites=fields.count("num_sats"),
-        hdop=fields.between("hdop", 0.0, 9999.99),
+        hdop=fields.between(hdop, 0.0, 9999.99),
         altitude=fields.number("altitude"),
         geoid_separation=fields.number("geo_sep"),
         correction_age=fields.between("age_gps_data", 0.0, 1e6),

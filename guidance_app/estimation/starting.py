@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from guidance_app.angles import wrap_pi
-from guidance_app.estimation.receiver_noise import DEFAULT_CELL
-from guidance_app.model import Measurement
+from guidance_app.estimation.receiver_noise import DEFAULT_CELL, fix_covariance
+from guidance_app.model import Measurement, Pose
 
-__all__ = ["Departure", "Waiting"]
+__all__ = ["Departure", "Waiting", "without_heading"]
 
 WINDOW = 6.0
 SHORTEST = 0.5
@@ -28,6 +28,23 @@ FASTEST_BACK = 3.0
 """Nobody backs up faster, in m/s."""
 REVERSAL = math.radians(110)
 """In the few seconds of being lost no tractor turns as far."""
+
+
+def without_heading(z: Measurement, *, standing: bool = False) -> Pose:
+    """What the first fixes say: a position, and that the heading is not known."""
+    return Pose(
+        z.t,
+        z.arrival,
+        z.east,
+        z.north,
+        heading=0.0,
+        speed=z.speed or 0.0,
+        covariance=fix_covariance(z),
+        heading_known=False,
+        standing=standing,
+        roll=z.roll,
+        pitch=z.pitch,
+    )
 
 
 @dataclass(frozen=True, slots=True)

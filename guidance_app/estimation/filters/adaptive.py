@@ -56,10 +56,10 @@ from guidance_app.estimation.motion import MotionTables
 from guidance_app.estimation.motion_models import ModelSet
 from guidance_app.estimation.observation_kernels import CELL_EAST, CELL_NORTH
 from guidance_app.estimation.readings import common_noise, readings, slip_of
-from guidance_app.estimation.receiver_noise import DEFAULT_CELL, ReceiverNoise, fix_covariance, noise_of
+from guidance_app.estimation.receiver_noise import DEFAULT_CELL, ReceiverNoise, noise_of
 from guidance_app.estimation.reference_point import offset_point
 from guidance_app.estimation.refused import Refused, is_lost, step_of
-from guidance_app.estimation.starting import Departure, Waiting
+from guidance_app.estimation.starting import Departure, Waiting, without_heading
 from guidance_app.estimation.stillness import Stillness
 from guidance_app.model import FloatArray, Measurement, Pose
 from guidance_app.model.making import made_quickly
@@ -167,27 +167,12 @@ class Adaptive:
             bias, bias_sd = self._start.gyro_bias, 0.001
         departure = waiting.departure(noise.white)
         if departure is None:
-            return _Before(waiting, _unknown(z), bias, bias_sd, still, before.pointed if before else None)
+            stands = z.speed is not None and z.speed < STANDING_SPEED
+            pose = without_heading(z, standing=stands)
+            return _Before(waiting, pose, bias, bias_sd, still, before.pointed if before else None)
         if before is not None and before.pointed is not None and z.heading is None:
             departure = departure.as_before(before.pointed)
         return _started(z, departure, noise, (self._settings.adaptive, self._tables.models(z)), (bias, bias_sd), still)
-
-
-def _unknown(z: Measurement) -> Pose:
-    """A position without a heading."""
-    return Pose(
-        z.t,
-        z.arrival,
-        z.east,
-        z.north,
-        heading=0.0,
-        speed=z.speed or 0.0,
-        covariance=fix_covariance(z),
-        heading_known=False,
-        standing=z.speed is not None and z.speed < STANDING_SPEED,
-        roll=z.roll,
-        pitch=z.pitch,
-    )
 
 
 def _started(

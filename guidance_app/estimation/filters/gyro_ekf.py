@@ -30,6 +30,7 @@ from guidance_app.estimation.correction_kernels import carried_covariance, corre
 from guidance_app.estimation.filter import Filter, FilterSettings, GyroSettings, Start
 from guidance_app.estimation.receiver_noise import DEFAULT_CELL, fix_covariance, noise_of
 from guidance_app.estimation.reference_point import offset_point
+from guidance_app.estimation.starting import without_heading
 from guidance_app.estimation.stillness import Stillness
 from guidance_app.estimation.travel import Travel
 from guidance_app.model import FloatArray, Measurement, Pose
@@ -142,7 +143,7 @@ class GyroFilter:
         standing = still.speed_bound(z, noise_of(z).white) is not None
         heading = _input_heading(before, z, travel, self._gyro_bias(), standing=standing)
         if heading is None:
-            pose = _unknown(z)
+            pose = without_heading(z)
             self._state = _State(z, travel, still, pose.speed, None, None, None, 0, pose)
         else:
             self._state = self._next(before, z, (travel, still), heading, standing=standing)
@@ -205,22 +206,6 @@ def _wrong_way(before: _State, z: Measurement, travel: Travel) -> bool:
     if z.heading is not None or travel.heading is None or before.travel.reverse <= travel.reverse:
         return False
     return abs(wrap_pi(travel.heading - before.pose.heading)) > math.pi / 2
-
-
-def _unknown(z: Measurement) -> Pose:
-    """A position without a heading."""
-    return Pose(
-        z.t,
-        z.arrival,
-        z.east,
-        z.north,
-        heading=0.0,
-        speed=z.speed or 0.0,
-        covariance=fix_covariance(z),
-        heading_known=False,
-        roll=z.roll,
-        pitch=z.pitch,
-    )
 
 
 def _input_heading(
