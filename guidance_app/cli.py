@@ -1,6 +1,6 @@
 """The command ``guidance-app``: parses, dispatches to ``commands``, and turns a known error into one line.
 
-Exit status: 0 done, 1 a check failed, 2 bad input or use, 130 stopped by Ctrl-C.
+Exit status: 0 done, 1 a check failed, 2 bad input or use, 130 stopped by Ctrl-C, 141 whoever read the output has gone.
 """
 
 import argparse
@@ -40,6 +40,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         status: int = parsed.func(parsed)
         sys.stdout.flush()
+    except BrokenPipeError:
+        # guidance-app inspect ... | head: nothing is left to say, neither now nor when the interpreter flushes.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 141
     except Exception as error:
         if not _is_known(error):
             raise
@@ -47,10 +51,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     except KeyboardInterrupt:
         return 130
-    except BrokenPipeError:
-        # The reader of our output has gone (guidance-app inspect ... | head): nothing is left to say to it.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
     return status
 
 

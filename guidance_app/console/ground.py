@@ -29,6 +29,7 @@ SUN = (-450.0, 450.0, 770.0)
 BACKDROP_RADIUS = 2600.0
 Z_GRID = -0.06
 START_FLAG: Rgb = (56, 190, 96)
+LINE_FLAG: Rgb = (60, 130, 230)
 ENTRANCE_FLAG: Rgb = (206, 160, 44)
 
 
@@ -40,7 +41,8 @@ class Ground:
         self._job = job
         self._palette = palette
         self._version: tuple[int, int] | None = None
-        self._passes_key: object = None
+        self._passes_key: object = ()
+        self._line_start: tuple[float, float] | None = None
         self._seen: Snapshot | None = None
         self._generation = 0
         self._latest: Snapshot | None = None
@@ -82,7 +84,7 @@ class Ground:
         self.worked.recolour(lit_source(palette.worked, palette.light))
         self.track.recolour(flat_source(palette.track))
         self.ghost.recolour(flat_source(palette.ghost))
-        self._version = self._passes_key = self._seen = None
+        self._version = self._seen = None
         if self._latest is not None:
             self.show(self._latest)
 
@@ -96,9 +98,10 @@ class Ground:
             self.ghost.clear()
         if self._version != (snapshot.ground_version, snapshot.generation):
             self._version = (snapshot.ground_version, snapshot.generation)
-            self._passes_key = None
+            self._passes_key = ()
             self._ground(snapshot)
         self._passes(snapshot)
+        self._mark_line_start(snapshot)
         self.worked.feed(snapshot.worked)
         self.track.feed(snapshot.track)
         self.ghost.feed(None if snapshot.ghost is None else snapshot.ghost.track)
@@ -209,11 +212,21 @@ class Ground:
         if field is not None and field.entrance is not None and snapshot.origin_deg is not None:
             entrance = FieldFrame(*snapshot.origin_deg).east_north_from_degrees(field.entrance[1], field.entrance[0])
         for name, place, colour in (("start", start, START_FLAG), ("entrance", entrance, ENTRANCE_FLAG)):
-            path = f"{WORLD}/flags/{name}"
-            if place is None:
-                self._drop(path)
-            else:
-                self._scene.add_glb(path, flag(colour), position=(*place, 0.0), cast_shadow=False)
+            self._flag(name, place, colour)
+
+    def _mark_line_start(self, snapshot: Snapshot) -> None:
+        """A blue flag at A while a line is drawn."""
+        start = None if snapshot.line_begun is None else snapshot.line_begun.start
+        if start != self._line_start:
+            self._line_start = start
+            self._flag("line", start, LINE_FLAG)
+
+    def _flag(self, name: str, place: tuple[float, float] | None, colour: Rgb) -> None:
+        path = f"{WORLD}/flags/{name}"
+        if place is None:
+            self._drop(path)
+        else:
+            self._scene.add_glb(path, flag(colour), position=(*place, 0.0), cast_shadow=False)
 
 
 def _same(one: tuple[FloatArray, ...], other: tuple[FloatArray, ...]) -> bool:

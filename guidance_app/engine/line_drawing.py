@@ -13,7 +13,7 @@ from guidance_app.guidance.patterns import LINES
 from guidance_app.guidance.patterns.a_plus import points_of
 from guidance_app.guidance.patterns.pivot import points_of_arc
 from guidance_app.language import sentence
-from guidance_app.model import FloatArray, LineKind
+from guidance_app.model import FloatArray, LineBegun, LineKind
 
 __all__ = ["AT_ONCE", "LineDrawing", "line_at_once"]
 
@@ -31,6 +31,7 @@ class LineDrawing:
     def __init__(self, kind: LineKind, start: tuple[float, float]) -> None:
         self.kind = kind
         self._points = [start]
+        self._metres = 0.0
 
     def fork(self) -> "LineDrawing":
         """An independent copy."""
@@ -40,8 +41,16 @@ class LineDrawing:
 
     def step(self, point: tuple[float, float]) -> None:
         """One guided point further; kept are points half a metre apart."""
-        if math.dist(self._points[-1], point) >= POINT_EVERY and len(self._points) < MOST_POINTS:
+        step = math.dist(self._points[-1], point)
+        if step >= POINT_EVERY and len(self._points) < MOST_POINTS:
             self._points.append(point)
+            self._metres += step
+
+    @property
+    def begun(self) -> LineBegun:
+        """The line as far as it has come: from A as the crow flies, a curve as it was driven."""
+        start, here = self._points[0], self._points[-1]
+        return LineBegun(self.kind, start, math.dist(start, here) if self.kind is LineKind.AB else self._metres)
 
     def family(self, end: tuple[float, float], spacing: float) -> PassFamily:
         """The passes beside the line that ends here. Raises ``GuidanceLineError``."""

@@ -15,7 +15,7 @@ from guidance_app.engine.line_drawing import AT_ONCE, LineDrawing, line_at_once
 from guidance_app.estimation.reference_point import carried, offset_point
 from guidance_app.geodesy import FieldFrame
 from guidance_app.guidance.coverage import Coverage
-from guidance_app.guidance.family import GuidanceLineError, ParallelLines, PassFamily
+from guidance_app.guidance.family import GuidanceLineError, Learner, ParallelLines, PassFamily
 from guidance_app.guidance.pass_work import PassWork
 from guidance_app.guidance.request import PlanError
 from guidance_app.guidance.straight import StraightStretch
@@ -32,7 +32,9 @@ from guidance_app.model import (
     DropOffset,
     EndLine,
     Guidance,
+    LineBegun,
     LineHere,
+    LineKind,
     Nudge,
     OffsetRecord,
     Pose,
@@ -122,7 +124,8 @@ class WorkDone:
             self._guide(self._tracker, pose, guided)
             self._show_around_target()
         if counted:
-            self._switch = self._switch.after(pose, self._guidance, reported)
+            line_driven = self._line_begun is not None
+            self._switch = self._switch.after(pose, self._guidance, reported, line_driven=line_driven)
         number = None if self._guidance is None else self._guidance.target.number
         self._coverage.step(implement, pose.t, self._working, number, self._mask)
         self._pass_work.step(self._guidance, working=self._working)
@@ -139,7 +142,10 @@ class WorkDone:
         return implement.offset_back
 
     def _guide(self, tracker: Tracker, pose: Pose, point: tuple[float, float]) -> None:
-        """Guidance along the target, and along the turn that leads there."""
+        """Guidance along the target, and along the turn that leads there; none while another line is drawn."""
+        if self._drawing is not None:
+            self._guidance = self._turning = None
+            return
         guidance = tracker.step(pose, point, self._working)
         self._turning = turning_of(self._turning, guidance, pose, point)
         if self._turning is not None and guidance is not None and guidance.turn is not None:
@@ -296,7 +302,7 @@ class WorkDone:
 
     def ahead(self, prediction: Prediction) -> Prediction:
         """The prediction with its errors against the turn being driven or the target pass, when there is one."""
-        if self._tracker is None or self._guided is None:
+        if self._tracker is None or self._guided is None or self._guidance is None:
             return prediction
         later = prediction.pose
         point = carried(self._guided[1], self._guided[0], later)
@@ -322,7 +328,7 @@ class WorkDone:
             "guidance": self._guidance,
             "working": self._working,
             "sections": self._sections,
-            "line_begun": None if self._drawing is None else self._drawing.kind,
+            "line_begun": self._line_begun,
             "work_mode": self._switch.mode,
             "totals": self._coverage.totals,
             "pass_totals": self._pass_totals,
@@ -342,6 +348,14 @@ class WorkDone:
         return shown
 
     @property
+    def _line_begun(self) -> LineBegun | None:
+        """The line that is being drawn, or the first pass that the next ones will follow."""
+        if self._drawing is not None:
+            return self._drawing.begun
+        family = None if self._ground is None else self._ground.family
+        return LineBegun(LineKind.FOLLOW) if isinstance(family, Learner) and not family.lines else None
+
+    @property
     def _pass_totals(self) -> CoverageTotals | None:
         """Of the target pass; what is left of it is what was driven by and not worked."""
         if self._guidance is None:
@@ -356,12 +370,13 @@ class WorkDone:
         self._guide_beside(ParallelLines(*stretch, self._job.implement.spacing))
 
     def _show_around_target(self) -> None:
-        """Without a field the shown lines follow the tractor."""
+        """Without a plan the shown lines follow the tractor, and what was learned from the last pass."""
         ground, guidance = self._ground, self._guidance
-        if ground is None or ground.family is None or guidance is None:
+        family = None if self._tracker is None else self._tracker.family
+        if ground is None or family is None or guidance is None:
             return
         number = guidance.target.number
-        if abs(number - self._shown_around) > SHOW_AGAIN_AFTER:
+        if family is not ground.family or abs(number - self._shown_around) > SHOW_AGAIN_AFTER:
             self._shown_around = number
-            self._ground = replace(ground, passes=shown_beside(ground.family, number))
+            self._ground = replace(ground, family=family, passes=shown_beside(family, number))
             self._version += 1

@@ -6,6 +6,7 @@ depend on nothing but the family and the number, sharing them between copies is 
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Protocol, runtime_checkable
@@ -61,8 +62,12 @@ class PassFamily(Protocol):
 
 
 @runtime_checkable
-class Learner(Protocol):
+class Learner(PassFamily, Protocol):
     """A family that makes its next passes from those driven."""
+
+    @property
+    def lines(self) -> Mapping[int, FloatArray]:
+        """Those driven, by their numbers; empty while the first one is driven."""
 
     def driven(self, number: int, points: FloatArray) -> PassFamily:
         """The family after pass ``number`` was driven along ``points`` of shape (N, 2)."""

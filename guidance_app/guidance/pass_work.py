@@ -7,7 +7,7 @@ import copy
 
 import numpy as np
 
-from guidance_app.guidance.progress import Progress
+from guidance_app.guidance.progress import Progress, driven_stretches
 from guidance_app.model import Guidance, Pass
 
 __all__ = ["PassWork"]
@@ -47,17 +47,11 @@ class PassWork:
         if self._last is not None:
             if abs(place - self._last) < EVERY and working == self._was_working:
                 return
-            for start, end in self._stretches(self._last, place, closed=guidance.target.closed):
+            for start, end in driven_stretches(self._last, place, self._length, closed=guidance.target.closed):
                 self._driven.add(self._key, start, end)
                 if self._was_working:
                     self._worked.add(self._key, start, end)
         self._last, self._was_working = place, working
-
-    def _stretches(self, start: float, end: float, *, closed: bool) -> tuple[tuple[float, float], ...]:
-        """What lies between two places, in two where a lap's end was crossed."""
-        if not closed or abs(end - start) <= 0.5 * self._length:
-            return ((start, end),)
-        return (0.0, min(start, end)), (max(start, end), self._length)
 
     @property
     def missed(self) -> float:

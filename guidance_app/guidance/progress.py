@@ -8,7 +8,7 @@ import bisect
 import itertools
 import math
 
-__all__ = ["SHORTEST", "Progress", "enough"]
+__all__ = ["SHORTEST", "Progress", "driven_stretches", "enough"]
 
 DONE_FRACTION = 0.9
 """A pass counts as done when this much of its length has been worked."""
@@ -29,6 +29,13 @@ SHORTEST = 3.0
 def enough(length: float) -> float:
     """Metres that have to be worked of a pass of this length; at least half of it."""
     return min(DONE_FRACTION * length, max(length - SHORT_REST, 0.5 * length))
+
+
+def driven_stretches(start: float, end: float, length: float, *, closed: bool) -> tuple[tuple[float, float], ...]:
+    """What lies between two along-track distances, in two where the end of a lap of this length was crossed."""
+    if not closed or abs(end - start) <= 0.5 * length:
+        return ((start, end),)
+    return (0.0, min(start, end)), (max(start, end), length)
 
 
 Stretches = tuple[tuple[float, float], ...]

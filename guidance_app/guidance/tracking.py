@@ -17,7 +17,7 @@ from guidance_app.guidance.itinerary import FamilyItinerary, GuideLine, Itinerar
 from guidance_app.guidance.learning import DrivenPass
 from guidance_app.guidance.offsets import LineOffsets
 from guidance_app.guidance.polyline import Foot, Polyline
-from guidance_app.guidance.progress import SHORTEST, Progress, enough
+from guidance_app.guidance.progress import SHORTEST, Progress, driven_stretches, enough
 from guidance_app.guidance.reading import ALIGNED, COME, STAY, Reader, Reading, Seen
 from guidance_app.guidance.replanning import First, Standing
 from guidance_app.guidance.resuming import carried_over, keys_of, rest_of
@@ -110,6 +110,11 @@ class Tracker:
             self._done = (keys, whole)
         return self._done[1]
 
+    @property
+    def family(self) -> PassFamily | None:
+        """What the passes are made of now, without offsets; None on a plan."""
+        return self._itinerary.family if isinstance(self._itinerary, FamilyItinerary) else None
+
     def moved(self, shown: Iterable[Pass]) -> tuple[Pass, ...]:
         """The same passes where the offsets in force put them; one that vanishes there is left out."""
         keys = (one.number if one.order is None else one.order for one in shown)
@@ -178,7 +183,7 @@ class Tracker:
         line, along = reading.line, reading.foot.along
         beside = abs(reading.foot.cross) <= (STAY if self._on else COME) * self._spacing and reading.off_axis <= ALIGNED
         if self._work_from is not None and continuous and beside:
-            for start, end in _stretches(self._work_from, along, line):
+            for start, end in driven_stretches(self._work_from, along, line.polyline.length, closed=line.target.closed):
                 self._progress.add(line.key, start, end)
             wanted = line.work_length
             if wanted is not None and 0 < enough(wanted) <= self._progress.worked(line.key):
@@ -387,12 +392,3 @@ class Tracker:
 
 def _guide(way: Path, distance: float, seconds: float | None) -> TurnGuide:
     return TurnGuide(distance, seconds, way.polyline.vertices, fits=way.fits)
-
-
-def _stretches(start: float, end: float, line: GuideLine) -> tuple[tuple[float, float], ...]:
-    """What lies between two along-track distances, in two where a lap's end was crossed."""
-    length = line.polyline.length
-    if not line.target.closed or abs(end - start) <= 0.5 * length:
-        return ((start, end),)
-    low, high = min(start, end), max(start, end)
-    return ((0.0, low), (high, length))

@@ -1,5 +1,7 @@
 """When the implement works: on the pass by itself, by the driver's button, by speed, or by its own switch.
 
+By itself it works too while the pass is driven from which a guidance line is made, wherever that leads.
+
 Each way has its own hysteresis, so that an implement on the edge of a rule does not flutter: it goes down under the
 narrow condition and comes up only outside the wide one.
 """
@@ -43,8 +45,13 @@ class WorkSwitch:
         """Lifted for now; the same way of deciding."""
         return replace(self, button=False, down=False)
 
-    def after(self, pose: Pose | None, guidance: Guidance | None, reported: bool | None) -> "WorkSwitch":
-        """The switch after one more fix. ``reported`` is what the implement's own switch says, None if nothing."""
+    def after(
+        self, pose: Pose | None, guidance: Guidance | None, reported: bool | None, *, line_driven: bool = False
+    ) -> "WorkSwitch":
+        """The switch after one more fix. ``reported`` is what the implement's own switch says, None if nothing.
+
+        ``line_driven`` while a guidance line is made by driving it: there is no pass yet to be on.
+        """
         match self.mode:
             case WorkMode.BUTTON:
                 down = self.button
@@ -53,13 +60,17 @@ class WorkSwitch:
             case WorkMode.SPEED:
                 down = pose is not None and _moves(pose, working=self.down)
             case WorkMode.AUTO:
-                down = pose is not None and self._on_the_pass(pose, guidance)
+                down = pose is not None and self._on_the_pass(pose, guidance, line_driven=line_driven)
             case _:
                 assert_never(self.mode)
         return self if down == self.down else replace(self, down=down)
 
-    def _on_the_pass(self, pose: Pose, guidance: Guidance | None) -> bool:
-        if guidance is None or not guidance.on_pass or pose.reverse or not _moves(pose, working=self.down):
+    def _on_the_pass(self, pose: Pose, guidance: Guidance | None, *, line_driven: bool) -> bool:
+        if pose.reverse or not _moves(pose, working=self.down):
+            return False
+        if line_driven:
+            return True
+        if guidance is None or not guidance.on_pass:
             return False
         turn = TURNED if self.down else STRAIGHT
         side = (FAR if self.down else NEAR) * self.width

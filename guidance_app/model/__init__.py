@@ -48,7 +48,7 @@ from guidance_app.model.commands import (
     WorkMode,
 )
 from guidance_app.model.drive import NO_PASS, DriveLog
-from guidance_app.model.known import Ghost, LinkState, LinkStatus, OffsetRecord, Snapshot
+from guidance_app.model.known import Ghost, LineBegun, LinkState, LinkStatus, OffsetRecord, Snapshot
 from guidance_app.model.lines import Guidance, Pass, Plan, PlanCosts, Segment, SegmentKind, TurnGuide
 from guidance_app.model.motion import Measurement, Pose, Prediction
 from guidance_app.model.session import (
@@ -104,6 +104,7 @@ __all__ = [
     "Guidance",
     "Initialised",
     "Initialising",
+    "LineBegun",
     "LineHere",
     "LineKind",
     "LinkState",

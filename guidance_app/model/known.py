@@ -15,6 +15,7 @@ from guidance_app.model.worked import CoverageTotals, Trail
 
 __all__ = [
     "Ghost",
+    "LineBegun",
     "LinkState",
     "LinkStatus",
     "OffsetRecord",
@@ -40,6 +41,18 @@ class LinkStatus(StrEnum):
     ENDED = "ended"
     UNUSED = "not in use"
     """Nothing is driven, so no receiver is read."""
+
+
+@dataclass(frozen=True, slots=True)
+class LineBegun:
+    """A guidance line that is being drawn by driving: from where, and how many metres of it there are.
+
+    ``start`` is None for the first pass that the next ones will follow: it begins where the implement is lowered.
+    """
+
+    kind: LineKind
+    start: tuple[float, float] | None = None
+    metres: float = 0.0
 
 
 @made_quickly
@@ -94,7 +107,7 @@ class Snapshot:
     switched on, the leftmost first; ``pass_totals`` is the work on the target pass, where ``left`` is what was driven
     by and not worked. ``roll_zero`` is a calibration under way; ``roll_zero_deg`` the zero in use. ``ghost`` is there
     in a replay that compares.
-    ``line_begun`` is the kind of the guidance line that is being drawn by driving, None while there is none.
+    ``line_begun`` is the guidance line that is being drawn by driving, None while there is none.
     """
 
     sequence: int
@@ -127,7 +140,7 @@ class Snapshot:
     initialising: Initialising | None = None
     initialised: Initialised | None = None
     sections: tuple[bool, ...] = (True,)
-    line_begun: LineKind | None = None
+    line_begun: LineBegun | None = None
     pass_totals: CoverageTotals | None = None
     roll_zero: RollZeroProgress | None = None
     roll_zero_deg: float = 0.0

@@ -17,6 +17,7 @@ from guidance_app.documents import Settings, Units
 from guidance_app.language import Words, words_for
 from guidance_app.model import Guidance, Pose, SessionState, Snapshot
 from guidance_app.view.bar_states import QUALITIES, REASONS, BarState, reason_of, state_of
+from guidance_app.view.drive import line_begun_words
 from guidance_app.view.instant import moved_right
 from guidance_app.view.units import area_text, distance_text, offset_text, speed_text
 
@@ -98,7 +99,7 @@ def bar_of(snapshot: Snapshot, now: float, settings: Settings) -> BarView:
     return BarView(
         sequence=snapshot.sequence,
         state=state,
-        reason=reason_of(state, snapshot.link, fix_age, words),
+        reason=_reason(snapshot, state, fix_age, settings.units, words),
         steering=steering,
         fix_age=fix_age,
         fix=_fix_text(snapshot, fix_age, state, words),
@@ -107,6 +108,14 @@ def bar_of(snapshot: Snapshot, now: float, settings: Settings) -> BarView:
         working=None if pose is None else snapshot.working,
         paused=snapshot.state is SessionState.PAUSED,
     )
+
+
+def _reason(snapshot: Snapshot, state: BarState, fix_age: float | None, units: Units, words: Words) -> str:
+    """Why there is nothing to steer by; a line that is being drawn says how far it has come."""
+    begun = snapshot.line_begun
+    if state is BarState.NO_LINE and begun is not None:
+        return line_begun_words(begun, units, words)
+    return reason_of(state, snapshot.link, fix_age, words)
 
 
 def _fix_text(snapshot: Snapshot, fix_age: float | None, state: BarState, words: Words) -> str:

@@ -7,10 +7,19 @@ from dataclasses import dataclass
 
 from guidance_app.documents import Units
 from guidance_app.language import Words, message
-from guidance_app.model import Command, Pause, Resume, SessionState, SetWork, SkipInitialisation, Snapshot
-from guidance_app.view.units import area_text
+from guidance_app.model import (
+    Command,
+    LineBegun,
+    Pause,
+    Resume,
+    SessionState,
+    SetWork,
+    SkipInitialisation,
+    Snapshot,
+)
+from guidance_app.view.units import distance_text, small_area_text
 
-__all__ = ["Press", "pass_work_words", "pause_press", "state_words", "work_press"]
+__all__ = ["Press", "line_begun_words", "pass_work_words", "pause_press", "state_words", "work_press"]
 
 STATES = {
     SessionState.IDLE: message("Waiting"),
@@ -56,6 +65,13 @@ def pause_press(snapshot: Snapshot, words: Words) -> Press:
     return Press(words("Pause"), Pause())
 
 
+def line_begun_words(begun: LineBegun, units: Units, words: Words) -> str:
+    """How far the line has come that is being drawn: for the bar, where there is nothing to steer by meanwhile."""
+    if begun.start is None:
+        return words("drive the first pass")
+    return words("{distance} from A", distance=distance_text(begun.metres, units, words))
+
+
 def pass_work_words(snapshot: Snapshot, units: Units, words: Words) -> str:
     """How much of the present pass is worked, worked twice, and was driven by with the implement up; empty without."""
     totals = snapshot.pass_totals
@@ -63,7 +79,7 @@ def pass_work_words(snapshot: Snapshot, units: Units, words: Words) -> str:
         return ""
     return words(
         "Pass: {worked} worked, {twice} twice, {missed} missed",
-        worked=area_text(totals.worked, units, words),
-        twice=area_text(totals.overlap, units, words),
-        missed=area_text(totals.left or 0.0, units, words),
+        worked=small_area_text(totals.worked, units, words),
+        twice=small_area_text(totals.overlap, units, words),
+        missed=small_area_text(totals.left or 0.0, units, words),
     )

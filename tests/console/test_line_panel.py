@@ -9,7 +9,7 @@ from support.snapshots import SetSession, field_snapshot
 from support.stage import Stage
 from support.viser_client import ViserClient
 
-from guidance_app.model import BeginLine, Command, DropLine, EndLine, LineKind
+from guidance_app.model import BeginLine, Command, DropLine, EndLine, LineBegun, LineKind
 
 
 @pytest.fixture
@@ -39,7 +39,10 @@ def test_with_a_plan_the_rest_is_there_and_without_one_the_line(server: viser.Vi
 def test_a_line_is_begun_ended_and_given_up(stage: Stage) -> None:
     with stage.client() as client:
         assert posted(stage, client, lambda: client.press("Begin here (A)")) == BeginLine(LineKind("ab"))
-        stage.session.publish(replace(stage.session.snapshot(), line_begun=LineKind.AB, sequence=900))
+        stage.session.publish(
+            replace(stage.session.snapshot(), line_begun=LineBegun(LineKind.AB, (0.0, 0.0), 24.2), sequence=900)
+        )
+        stage.tick_until(client, lambda: "24 m from A: drive on, press End at B." in client.words())
         assert posted(stage, client, lambda: client.press("End here (B)")) == EndLine()
         assert posted(stage, client, lambda: client.press("Give up")) == DropLine()
 

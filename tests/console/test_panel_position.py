@@ -136,7 +136,7 @@ def test_a_pause_is_seen_everywhere_and_left_by_two_buttons(stage: Stage) -> Non
 
 def test_how_the_present_pass_is(stage: Stage) -> None:
     with stage.client() as client:
-        stage.tick_until(client, lambda: "Pass: 0.03 ha worked, 0.00 ha twice, 0.00 ha missed" in client.words())
+        stage.tick_until(client, lambda: "Pass: 310 m² worked, 12 m² twice, 40 m² missed" in client.words())
 
 
 def test_a_section_that_is_off_is_marked_and_drawn_apart(stage: Stage) -> None:

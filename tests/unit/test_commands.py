@@ -2,6 +2,10 @@
 
 import csv
 import json
+import os
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -28,6 +32,18 @@ def field(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("fields") / "square.geojson"
     write_field(a_field(), path)
     return path
+
+
+def test_whoever_reads_the_output_may_leave_early(log: Path) -> None:
+    """As in ``guidance-app inspect LOG | head``: no trace, and the shell's own status for it."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    try:
+        command = [sys.executable, "-m", "guidance_app", "inspect", str(log)]
+        ended = subprocess.run(command, stdout=writing, stderr=subprocess.PIPE, check=False)  # noqa: S603 - our own program
+    finally:
+        os.close(writing)
+    assert (ended.returncode, ended.stderr) == (128 + signal.SIGPIPE, b"")
 
 
 def rows_of(path: Path) -> list[dict[str, str]]:

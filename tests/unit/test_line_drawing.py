@@ -62,7 +62,9 @@ def test_an_ab_line_runs_through_both_points_whatever_was_driven_between() -> No
 
 def test_while_a_line_is_drawn_the_first_straight_stretch_takes_nothing() -> None:
     snapshots = driven([(0.0, 0.0), (0.0, 150.0)], {10: BeginLine(LineKind("curve"))})
-    assert snapshots[-1].line_begun == "curve"
+    assert snapshots[-1].line_begun is not None
+    assert snapshots[-1].line_begun.kind == "curve"
+    assert snapshots[-1].working
     assert snapshots[-1].guidance is None
 
 
@@ -111,7 +113,8 @@ def test_a_straight_pivot_and_a_short_ab_line_are_refused_and_drawing_goes_on() 
     snapshots = driven([(0.0, 0.0), (0.0, 60.0)], {10: BeginLine(LineKind("pivot")), 60: EndLine(), 70: DropLine()})
     refused = [one for one in snapshots if any("straight line" in notice for notice in one.notices)]
     assert refused
-    assert refused[0].line_begun == "pivot"
+    assert refused[0].line_begun is not None
+    assert refused[0].line_begun.kind == "pivot"
     assert snapshots[-1].line_begun is None
     short = driven([(0.0, 0.0), (0.0, 60.0)], {10: BeginLine(LineKind("ab")), 14: EndLine()})
     assert any("less than 5 m" in notice for one in short for notice in one.notices)
@@ -125,6 +128,39 @@ def test_with_a_plan_no_line_is_drawn_and_an_end_needs_a_beginning() -> None:
     assert any("press A first" in notice for one in ended for notice in one.notices)
 
 
+def test_while_another_line_is_drawn_nothing_is_guided_and_giving_up_leads_back_to_the_old_one() -> None:
+    straight = [(0.0, 0.0), (0.0, 220.0)]
+    snapshots = driven(straight, {200: BeginLine(LineKind.AB), 300: DropLine()})
+    drawn = [one for one in snapshots if one.line_begun is not None]
+    assert snapshots[199].guidance is not None
+    assert len(drawn) > 50
+    assert all(one.guidance is None for one in drawn[1:])
+    begun = drawn[-1].line_begun
+    assert begun is not None
+    assert begun.start is not None
+    here = drawn[-1].pose
+    assert here is not None
+    assert begun.metres == pytest.approx(math.dist(begun.start, (here.east, here.north)), abs=1.0)
+    assert snapshots[-1].line_begun is None
+    assert snapshots[-1].guidance is not None
+
+
+def test_the_first_pass_is_followed_without_a_press_and_lines_are_shown_beside_it() -> None:
+    """With the implement on Auto, as every drive begins: nobody has to think of the button."""
+    there, back = [(0.0, 0.0), (0.0, 120.0)], [(1.0, 123.0), (2.5, 121.0), (3.0, 110.0), (3.0, 20.0)]
+    snapshots = driven([*there, *back], {5: BeginLine(LineKind.FOLLOW)})
+    first = snapshots[100]
+    assert first.line_begun is not None
+    assert first.line_begun.start is None
+    assert first.working
+    assert first.passes == ()
+    last = snapshots[-1]
+    assert last.line_begun is None
+    assert last.guidance is not None
+    assert abs(last.guidance.target.number) == 1
+    assert {-1, 0, 1, 2} <= {one.number for one in last.passes}
+
+
 def test_a_fork_draws_its_own_line() -> None:
     engine = Engine(a_job(field=False))
     chunks = path_chunks([(0.0, 0.0), (0.0, 100.0)])
@@ -136,7 +172,8 @@ def test_a_fork_draws_its_own_line() -> None:
         engine.step(chunk)
     engine.step(Commanded(20.0, EndLine()))
     assert engine.snapshot.line_begun is None
-    assert other.snapshot.line_begun == "ab"
+    assert other.snapshot.line_begun is not None
+    assert other.snapshot.line_begun.kind == "ab"
 
 
 @pytest.mark.parametrize("heading", [400.0, -1.0, math.nan])

@@ -6,9 +6,11 @@ import viser
 
 from guidance_app.console.desk import Desk, Hands
 from guidance_app.console.widgets import Choice, Shown, notice_html
+from guidance_app.documents import Units
 from guidance_app.engine.line_drawing import AT_ONCE
 from guidance_app.language import message
-from guidance_app.model import BeginLine, DropLine, EndLine, LineKind
+from guidance_app.model import BeginLine, DropLine, EndLine, LineBegun, LineKind
+from guidance_app.view.drive import line_begun_words
 
 __all__ = ["Line"]
 
@@ -74,15 +76,29 @@ class Line:
             command = BeginLine(self._kind)
         self._hands.post(command)
 
+    def _hints(self, under_way: LineBegun | None, units: Units) -> list[str]:
+        """What to do: before a line is begun, and while it is drawn, when all that is driven counts as worked."""
+        words = self._words
+        if under_way is None:
+            return [words(HELP[self._kind])]
+        so_far = line_begun_words(under_way, units, words)
+        what = (
+            words(HELP[LineKind.FOLLOW])
+            if under_way.start is None
+            else words("{distance}: drive on, press End at B.", distance=so_far)
+        )
+        return [what, words("With Auto it counts as worked; press to lift for a drive without work.")]
+
     def show(self, desk: Desk) -> None:
         """Brings buttons and words up to the line that is drawn."""
         words = self._words
-        begun = desk.snapshot.line_begun
+        under_way = desk.snapshot.line_begun
+        begun = None if under_way is None or under_way.start is None else under_way.kind
         names = {kind: words(name) for name, kind in NAMES.items()}
         self._choice.show(names[begun or self._kind])
         planned = desk.snapshot.plan is not None
         said = words("This drive follows a plan: start one without a plan to draw a line.") if planned else ""
-        self._help.show(notice_html([said or words(HELP[begun or self._kind])]))
+        self._help.show(notice_html([said] if said else self._hints(under_way, desk.units)))
         self._heading.visible = self._kind == LineKind.A_PLUS and begun is None and not planned
         self._begin.visible = begun is None and not planned
         self._begin.label = words("Guide from here") if self._kind in AT_ONCE else words("Begin here (A)")
