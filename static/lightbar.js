@@ -15,6 +15,9 @@ const shared = {
   connections: 0,
   lastHeard: null,
   silentSince: null,
+  lookedBefore: null, // the look before the one that found silence
+  silentAfter: null,
+  lookEvery: null,
   worker: false,
 };
 window.__lightbar = shared;

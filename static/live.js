@@ -2,6 +2,7 @@
 // finds its way back to a console that was away. Runs in a worker or on the page.
 
 const SILENT_AFTER = 800; // ms without a message, or of lateness, before nothing is believed any more
+const LOOK_EVERY = 100;
 const HANG_UP_AFTER = 3000; // ms of silence before the socket is replaced
 const RETRY = 500;
 const LATENESS_WINDOW = 15000;
@@ -26,10 +27,19 @@ function makeLateness() {
 /**
  * Listens for good. `onMessage` gets each message of the bar that has come in time and the moment it came, `onStyle` the
  * rarer ones about its style, `onSilence` is called when nothing is to be believed any more, `onShutOut` when the console
- * no longer knows this browser. Gives a record of the contact: sockets opened so far, last message heard, silence begun.
+ * no longer knows this browser. Gives a record of the contact: sockets opened so far, last message heard, silence begun,
+ * the look before that one, after how many ms silence counts, and how often is looked.
  */
 export function listen({ onMessage, onStyle, onSilence, onShutOut }) {
-  const contact = { connections: 0, lastHeard: performance.now(), silentSince: null };
+  const contact = {
+    connections: 0,
+    lastHeard: performance.now(),
+    silentSince: null,
+    lookedBefore: null,
+    silentAfter: SILENT_AFTER,
+    lookEvery: LOOK_EVERY,
+  };
+  let looked = performance.now();
   let socket = null;
   let opened = 0;
   let lateness = makeLateness();
@@ -77,9 +87,12 @@ export function listen({ onMessage, onStyle, onSilence, onShutOut }) {
 
   const watch = () => {
     const now = performance.now();
+    const before = looked;
+    looked = now;
     if (now - contact.lastHeard <= SILENT_AFTER) return;
     if (contact.silentSince === null) {
       contact.silentSince = now;
+      contact.lookedBefore = before;
       onSilence();
     }
     if (socket && now - Math.max(contact.silentSince, opened) > HANG_UP_AFTER) {
@@ -91,6 +104,6 @@ export function listen({ onMessage, onStyle, onSilence, onShutOut }) {
   };
 
   connect();
-  setInterval(watch, 100);
+  setInterval(watch, LOOK_EVERY);
   return contact;
 }

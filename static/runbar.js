@@ -54,6 +54,9 @@ export function runBar(canvas, tell) {
       connections: contact.connections,
       lastHeard: epoch(contact.lastHeard),
       silentSince: epoch(contact.silentSince),
+      lookedBefore: epoch(contact.lookedBefore),
+      silentAfter: contact.silentAfter,
+      lookEvery: contact.lookEvery,
       timing: heard && {
         sequence: message.q,
         age: message.a ?? null,

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
-from support.chromium import SIZES, TABLET, WITHOUT_DRAWING, OpenPage, save_screenshot
+from support.chromium import SIZES, TABLET, WITHOUT_DRAWING, OpenPage, assert_silent_at_the_first_look, save_screenshot
 
 from guidance_app.commands.demo import SAMPLE_OPERATION
 from guidance_app.documents import Job
@@ -26,7 +26,6 @@ from guidance_app.view.bar import BarView, bar_of
 pytestmark = pytest.mark.browser
 
 MILLIMETRE = 1e-3
-SILENT_WITHIN_MS = 1000.0
 END_S = 60.0
 IN_THE_MIDDLE, NEAR_THE_START = 0.42, 0.18
 """Where the slider is tapped, as a part of its length: in the middle of a pass, also some seconds beside it."""
@@ -200,8 +199,7 @@ def test_a_frozen_command_says_no_data_within_a_second_and_both_bar_and_scene_co
     demo.freeze()
     try:
         expect(bar).to_have_attribute("data-state", "silent")
-        heard, silent = page.evaluate("[window.__lightbar.lastHeard, window.__lightbar.silentSince]")
-        assert silent - heard < SILENT_WITHIN_MS
+        assert_silent_at_the_first_look(page)
         assert bar.get_attribute("data-cross-track") == ""
         expect(bar.locator("canvas")).to_have_attribute("aria-label", "NO DATA")
     finally:

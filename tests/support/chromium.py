@@ -48,6 +48,8 @@ for (const kind of [self.WebGLRenderingContext, self.WebGL2RenderingContext]) {
 OpenPage = Callable[..., Page]
 
 PATIENCE_MS = 60_000
+SILENT_WITHIN_MS = 1000.0
+ROUNDING_MS = 0.01
 expect.set_options(timeout=PATIENCE_MS)
 
 
@@ -143,6 +145,17 @@ def clean_pages(chromium: Browser) -> Iterator[OpenPage]:
             context.close()
     errors = [error for log in logs for error in log.errors]
     assert not errors, "the page's log holds errors:\n" + "\n".join(errors)
+
+
+def assert_silent_at_the_first_look(page: Page) -> None:
+    """Silence is said within a second, as far as it is up to the page: by the first look that could find it.
+
+    How late a busy machine lets the page look is not asked.
+    """
+    names = ("lastHeard", "lookedBefore", "silentAfter", "lookEvery")
+    heard, before, limit, every = (page.evaluate(f"window.__lightbar.{name}") for name in names)
+    assert limit + every < SILENT_WITHIN_MS
+    assert before - heard <= limit + ROUNDING_MS
 
 
 def save_screenshot(page: Page, name: str) -> None:
