@@ -1,9 +1,12 @@
 """Corners of a lap that are worked by backing up.
 
 A lap that cuts a corner on a circle leaves its tip unworked. Where that is worth it, the lap ends after the corner, the
-machine backs along the next side to the boundary (or into the lap outside), and starts that side from there.
+machine backs along the next side to the boundary (or into the lap outside), and starts that side from there. Where the
+boundary bends in behind it, a straight way back would end as soon as the implement's end comes too near: the machine
+then backs up on a wide circle.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -14,6 +17,7 @@ from guidance_app.guidance.clearance import ARC
 from guidance_app.guidance.lap import Corner
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.guidance.ring import LONG, Ring
+from guidance_app.guidance.room import BoolArray
 from guidance_app.model import FloatArray
 
 __all__ = ["ON_THE_LINE", "CornerFinder"]
@@ -39,6 +43,9 @@ SHORTEST_BACK = 1.0
 STEP = 0.25
 """Metres between the places where a side may begin."""
 
+BENDS = (0.0, 0.025, 0.05, 0.1, 0.2)
+"""Of the turning circle's bend: how much the way back may bend away from the boundary."""
+
 
 class CornerFinder:
     """Finds the corners of laps at one distance from the boundary.
@@ -51,6 +58,8 @@ class CornerFinder:
         self._cuts = cuts
         self._half_width = request.width / 2
         self._half_length = request.length / 2
+        self._inward = -1.0 if request.laps_clockwise else 1.0
+        self._radius = request.path_radius
         self._growth = 1.0 + self._half_width / request.path_radius
         self._worth = WORTH * request.width
         outside = inset - self._half_width
@@ -79,29 +88,52 @@ class CornerFinder:
             return None
         here, ahead = ring.points[last], ring.points[(last + 1) % len(ring.points)]
         direction = (ahead - here) / np.hypot(*(ahead - here))
-        metres = self._back(here, direction, float(np.hypot(*(tips[deepest] - here))))
-        if metres is None or metres < SHORTEST_BACK:
+        back = self._back(here, direction, float(np.hypot(*(tips[deepest] - here))))
+        if back is None:
             return None
         arc = slice(first, last + 1)
         lift = self._lift(ring.along[arc], ring.points[arc] - here, direction)
-        return Corner(lift, float(ring.along[last]), here - metres * direction)
+        return Corner(lift, float(ring.along[last]), back)
 
-    def _back(self, here: FloatArray, direction: FloatArray, tip: float) -> float | None:
-        """Metres back from the corner's end along the next side: to the boundary, or into what is worked outside."""
-        across = np.array([-direction[1], direction[0]]) * self._half_width
+    def _back(self, here: FloatArray, direction: FloatArray, tip: float) -> FloatArray | None:
+        """The way (N, 2) back from the corner's end: to the boundary, or into what is worked outside.
+
+        It is straight, or bends away from the boundary, whichever gains most ground.
+        """
         metres = np.arange(0.0, tip + 2 * self._half_width, STEP)
-        rear = here - (metres + self._half_length)[:, None] * direction
-        bars = shapely.linestrings(np.stack([rear - across, rear + across], axis=1))
-        possible = shapely.covers(self._ground, bars)
+        bends = np.array(BENDS)[:, None] / self._radius
+        inward = self._inward * np.array([-direction[1], direction[0]])
+        places, ahead, across = _backed(bends, metres, direction, inward)
+        rear, side = here + places - self._half_length * ahead, self._half_width * across
+        bars = shapely.linestrings(np.stack([rear - side, rear + side], axis=2))
+        possible: BoolArray = np.asarray(shapely.covers(self._ground, bars))
         if self._unworked is not None:
             possible &= shapely.intersects(self._unworked, bars)
-        steps = len(metres) if possible.all() else int(np.argmin(possible))
-        return float(metres[steps - 1]) if steps > 1 else None
+        steps = np.where(possible.all(axis=1), len(metres), np.argmin(possible, axis=1))
+        far = metres[np.maximum(steps - 1, 0)]
+        best = int(np.argmax(2 * self._half_width * far - bends[:, 0] * far**3 / 6))
+        if far[best] < SHORTEST_BACK:
+            return None
+        count = 2 if bends[best] == 0 else math.ceil(far[best]) + 1
+        way: FloatArray = here + places[best, np.linspace(0, steps[best] - 1, count).astype(int)]
+        return way
 
     def _lift(self, along: FloatArray, points: FloatArray, direction: FloatArray) -> float:
         """Where the lap has come into the swath of the next side, so that the implement may be lifted."""
         aside = np.abs(points @ np.array([-direction[1], direction[0]]))
         return float(along[int(np.argmax(aside <= LIFT * self._half_width))])
+
+
+def _backed(
+    bends: FloatArray, metres: FloatArray, direction: FloatArray, inward: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Where a machine is that backed up on circles, which way it points, and what is inward of it; (B, M, 2) each."""
+    turned = (bends * metres)[..., None]
+    behind = metres[:, None] * np.sinc(turned / np.pi)
+    beside = metres[:, None] * turned / 2 * np.sinc(turned / 2 / np.pi) ** 2
+    ahead = np.cos(turned) * direction - np.sin(turned) * inward
+    across = np.sin(turned) * direction + np.cos(turned) * inward
+    return beside * inward - behind * direction, ahead, across
 
 
 def _straight_from(ring: Ring, place: int) -> int | None:

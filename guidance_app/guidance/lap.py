@@ -23,12 +23,12 @@ class Corner:
     """Where a lap's side ends and the next begins.
 
     The implement is lifted at ``lift`` and the corner passed at ``end``, metres along the lap (``lift`` may lie before
-    its seam); the next side begins at ``start`` (east, north), behind the corner's end.
+    its seam); ``back`` (N, 2) leads from the corner's end back to where the next side begins.
     """
 
     lift: float
     end: float
-    start: FloatArray
+    back: FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,7 +85,7 @@ class Lap:
         yield Side(self.line.stretch(begin, corners[0].lift), closed=False, approach=None)
         for corner, following in zip(corners, [*corners[1:], None], strict=True):
             target = begin if following is None else following.lift
-            points = np.vstack([corner.start[None], self.line.stretch(corner.end, target)])
+            points = np.vstack([corner.back[:0:-1], self.line.stretch(corner.end, target)])
             yield Side(points, closed=False, approach=self._round(corner))
 
     def _round(self, corner: Corner) -> Turn:
@@ -93,6 +93,5 @@ class Lap:
         legs: list[Leg] = []
         if corner.end - corner.lift > SHORTEST:
             legs.append(leg_of(self.line.stretch(corner.lift, corner.end), reverse=False))
-        end = self.line.at(np.array([corner.end]))[0]
-        legs.append(leg_of(np.stack([end, corner.start]), reverse=True))
+        legs.append(leg_of(corner.back, reverse=True))
         return Turn(tuple(legs), sum(leg.length for leg in legs))
