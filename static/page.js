@@ -59,6 +59,28 @@
     hear(isNight());
   };
 
+  // --- on a phone viser's panels are a sheet over the picture: the picture ends where the sheet begins ---
+  let sheet = null;
+  let picture = null;
+  const fit = () => {
+    if (picture) picture.style.height = sheet ? `calc(100% - ${sheet.offsetHeight}px)` : "";
+  };
+  const sized = new ResizeObserver(fit);
+  const isSheet = (one) => {
+    const style = getComputedStyle(one);
+    return style.position === "fixed" && style.bottom === "0px" && style.maxHeight !== "none";
+  };
+  const look = () => {
+    if (sheet?.isConnected && picture?.isConnected) return;
+    sized.disconnect();
+    sheet = [...document.querySelectorAll("#root .mantine-Paper-root")].find(isSheet) ?? null;
+    picture = document.querySelector("#root canvas[data-engine]");
+    while (picture && getComputedStyle(picture).position !== "absolute") picture = picture.parentElement;
+    if (sheet) sized.observe(sheet);
+    fit();
+  };
+  new MutationObserver(look).observe(document.documentElement, { childList: true, subtree: true });
+
   // What the page says, in the driver's language: the light bar hears it from the console.
   const words = { notSent: "{file} could not be sent" };
 

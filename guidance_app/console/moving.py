@@ -45,6 +45,9 @@ Z_TURN, Z_ELLIPSE = 0.125, 0.13
 LIFTED = 0.35
 """How high a lifted implement hangs."""
 
+RESHAPED = math.log(1.15)
+"""A picture that is so much wider or narrower for its height has another home for the camera."""
+
 NOWHERE = Extent(-50.0, -50.0, 50.0, 50.0)
 NOTHING = np.zeros((1, 2, 3), dtype=np.float32)
 HERE = f"{WORLD}/here"
@@ -73,6 +76,7 @@ class ClientScene:
         self._mode = ViewMode.DRIVER
         self._home: CameraHome | None = None
         self._home_key: object = None
+        self._home_aspect = 1.0
         self._shown_heading: float | None = None
         self._last_now: float | None = None
         self._lies = WorldPose(0.0, 0.0, 0.0)
@@ -158,15 +162,19 @@ class ClientScene:
     # --- camera and world ------------------------------------------------------------------------------------------
 
     def _camera(self, ground: Ground) -> None:
-        """Sends the camera home when the view, the window or the field have changed; never else."""
+        """Sends the camera home when the view, the picture's shape or the field have changed; never else.
+
+        On a phone the picture is what the panels leave of the screen: a line more there does not move the camera.
+        """
         camera = self._client.camera
         aspect = camera.image_width / max(camera.image_height, 1)
         asked = self._home_key is None and self._mode is ViewMode.WHOLE_FIELD
         box = (ground.measure_anew() if asked else ground.extent) or NOWHERE
-        key = (self._mode, round(aspect, 2), box if self._mode is ViewMode.WHOLE_FIELD else None)
-        if key == self._home_key:
+        key = (self._mode, box if self._mode is ViewMode.WHOLE_FIELD else None)
+        reshaped = abs(math.log(aspect / self._home_aspect)) > RESHAPED
+        if key == self._home_key and not reshaped:
             return
-        self._home_key = key
+        self._home_key, self._home_aspect = key, aspect
         width = self._job.implement.working_width
         self._lines["target"].thickness = 4.0 if self._mode is ViewMode.WHOLE_FIELD else 6.0
         home = camera_home(self._mode, width=width, extent=box, aspect=aspect)

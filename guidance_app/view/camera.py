@@ -28,12 +28,6 @@ FIELD_OF_VIEW = math.radians(50)
 """Vertical, of every view."""
 
 NEAR, FAR = 0.3, 3000.0
-UPRIGHT = 0.8
-"""A window narrower than this against its height is a phone's."""
-
-SHEET = 0.38
-"""The share of a phone's window that the panels cover from below."""
-
 HEADING_EASE = 0.35
 """Time constant in seconds by which the world's direction follows the tractor's: the ground does not shake."""
 
@@ -137,29 +131,28 @@ def eased_heading(shown: float | None, heading: float, seconds: float) -> float:
 
 
 def camera_home(mode: ViewMode, *, width: float, extent: Extent, aspect: float) -> CameraHome:
-    """Where the camera begins: ``width`` is the implement's, ``extent`` the field's, ``aspect`` the window's w / h."""
+    """Where the camera begins: ``width`` is the implement's, ``extent`` the field's, ``aspect`` the picture's w / h."""
     up = math.tan(FIELD_OF_VIEW / 2)
     across = up * aspect
-    covered = SHEET if aspect < UPRIGHT else 0.0
     match mode:
         case ViewMode.DRIVER:
-            return _behind(max(15.0, (0.62 * width + 3.5) / across), covered)
+            return _behind(max(15.0, (0.62 * width + 3.5) / across))
         case ViewMode.HEADING_UP:
             height = max(26.0 / up, (0.9 * width + 8.0) / across)
-            return _above(height, ahead=(0.36 - 2 * covered) * height * up)
+            return _above(height, ahead=0.36 * height * up)
         case ViewMode.NORTH_UP:
             height = max(34.0 / up, (1.2 * width + 10.0) / across)
-            return _above(height, ahead=-covered * height * up)
+            return _above(height, ahead=0.0)
         case ViewMode.WHOLE_FIELD:
             across_m, up_m = extent.size
-            height = 1.16 * max(up_m / (up * (1 - covered)), across_m / across) / 2
-            return _above(height, ahead=-covered * height * up)
+            height = 1.16 * max(up_m / up, across_m / across) / 2
+            return _above(height, ahead=0.0)
 
 
-def _behind(distance: float, covered: float) -> CameraHome:
-    """Over the driver's shoulder, ``distance`` from the tractor; it looks lower where the window's foot is covered."""
-    back, height = 0.88 * distance, (0.48 - 0.16 * covered) * distance
-    return CameraHome((-back, 0.0, height), ((0.62 - 1.35 * covered) * distance, 0.0, 0.0), 0.06 * distance, FAR)
+def _behind(distance: float) -> CameraHome:
+    """Over the driver's shoulder, ``distance`` from the tractor."""
+    back, height = 0.88 * distance, 0.48 * distance
+    return CameraHome((-back, 0.0, height), (0.62 * distance, 0.0, 0.0), 0.06 * distance, FAR)
 
 
 def _above(height: float, *, ahead: float) -> CameraHome:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
-from support.chromium import SIZES, TABLET, WITHOUT_DRAWING, OpenPage, save_screenshot
+from support.chromium import PHONE, SIZES, TABLET, WITHOUT_DRAWING, OpenPage, save_screenshot
 from support.consoles import running_console
 
 from guidance_app.console.screen import Screen
@@ -136,3 +136,24 @@ def test_forms_fit_every_screen(console: Console, open_page: OpenPage, size: tup
     assert box["x"] + box["width"] <= size[0]
     assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
     save_screenshot(page, f"tractor-{size[0]}x{size[1]}")
+
+
+PICTURE_ABOVE_THE_SHEET = """(least) => {
+  const picture = document.querySelector("#root canvas[data-engine]")?.getBoundingClientRect();
+  const sheet = [...document.querySelectorAll("#root .mantine-Paper-root")]
+    .find((one) => getComputedStyle(one).position === "fixed")?.getBoundingClientRect();
+  return picture && sheet && Math.abs(picture.bottom - sheet.top) <= 1 && picture.height >= least;
+}"""
+
+
+def test_on_a_phone_the_picture_is_what_the_panels_leave(console: Console, open_page: OpenPage) -> None:
+    """The whole of it is in sight: a little beside a form, and nearly all of the screen after one tap."""
+    page = opened(console, open_page, PHONE)
+    page.wait_for_function(PICTURE_ABOVE_THE_SHEET, arg=120)
+    page.get_by_text("Setup", exact=True).tap()
+    page.wait_for_function(PICTURE_ABOVE_THE_SHEET, arg=500)
+    page.get_by_text("Setup", exact=True).tap()
+    page.get_by_role("tab", name="Machines").tap()
+    press(page, "Tractors")
+    page.wait_for_function(PICTURE_ABOVE_THE_SHEET, arg=120)
+    assert page.evaluate("document.scrollingElement.scrollWidth") <= PHONE[0]
