@@ -28,12 +28,14 @@ PATIENCE_S = 5.0
 class DecodedEvents:
     """Goes once over events, each with what was heard, or with None where the engine has to listen itself.
 
-    There is a process for ``long`` events or more (else ``LONG``), where there is a second processor. If it ends early
-    the rest is decoded here. ``hearing`` is how to go on behind the last event; None where the engine has listened.
+    ``hearing`` is what was heard before them, None for nothing; it is left as it is. There is a process for ``long``
+    events or more (else ``LONG``), where there is a second processor. If it ends early the rest is decoded here.
+    Afterwards ``hearing`` is how to go on; None where the engine has listened.
     """
 
-    def __init__(self, events: Sequence[Event], long: int | None = None) -> None:
+    def __init__(self, events: Sequence[Event], long: int | None = None, hearing: Hearing | None = None) -> None:
         self._events = events
+        self._before = Hearing() if hearing is None else hearing
         alone = (os.cpu_count() or 1) < 2 or multiprocessing.current_process().daemon
         self._beside = len(events) >= (LONG if long is None else long) and not alone
         self.hearing: Hearing | None = None
@@ -45,7 +47,9 @@ class DecodedEvents:
             return
         context = multiprocessing.get_context("spawn")
         receiving, sending = context.Pipe(duplex=False)
-        process = context.Process(target=_decode, args=(sending, self._events), name="decoding", daemon=True)
+        process = context.Process(
+            target=_decode, args=(sending, self._events, self._before), name="decoding", daemon=True
+        )
         process.start()
         sending.close()
         try:
@@ -77,7 +81,7 @@ class DecodedEvents:
 
     def _listened(self, count: int) -> Hearing:
         """As the process was after so many events."""
-        hearing = Hearing()
+        hearing = self._before.fork()
         for index in range(count):
             _heard(hearing, self._events[index])
         return hearing
@@ -95,10 +99,9 @@ def _received(receiving: Connection) -> "list[Heard | None] | Hearing | None":
         return None
 
 
-def _decode(sending: Connection, events: Sequence[Event]) -> None:
+def _decode(sending: Connection, events: Sequence[Event], hearing: Hearing) -> None:
     """The process: what is heard of all events, then how to go on."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the program that waits for this
-    hearing = Hearing()
     batch: list[Heard | None] = []
     try:
         for event in events:

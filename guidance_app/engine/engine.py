@@ -146,6 +146,11 @@ class Engine:
             other._publish(self._snapshot.arrival, {"generation": generation})  # noqa: SLF001 - its own class
         return other
 
+    @property
+    def hearing(self) -> Hearing:
+        """What it listens with, as it is now."""
+        return self._hearing
+
     def take_hearing(self, hearing: Hearing) -> None:
         """Goes on listening from here, after steps that were given what was heard."""
         self._hearing = hearing

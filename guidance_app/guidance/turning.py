@@ -63,10 +63,15 @@ def turning_of(before: Turning | None, guidance: Guidance | None, pose: Pose, po
     turn = None if guidance is None else guidance.turn
     if turn is None or not turn.driven or not pose.heading_known:
         return None
-    if before is not None and np.may_share_memory(before.points, turn.points):
+    if before is not None and _same(before.points, turn.points):
         return before.on(point)
     path = Polyline.through(_fine(turn.points))
     return Turning(turn.points, path, path.foot(*point), point)
+
+
+def _same(before: FloatArray, now: FloatArray) -> bool:
+    """Nearly always the same memory; an engine that was kept in a file has a copy of it."""
+    return np.may_share_memory(before, now) or np.array_equal(before, now)
 
 
 def _fine(points: FloatArray) -> FloatArray:

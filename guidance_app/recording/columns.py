@@ -22,10 +22,11 @@ _TRUTH = frozenset({"on_pass", "working", "standing"})
 class DriveGathering:
     """Takes snapshots as they come and keeps a row for each new fix."""
 
-    def __init__(self) -> None:
+    def __init__(self, last: Snapshot | None = None) -> None:
+        """``last`` is the snapshot whose row was taken already, where a drive is gone on with."""
         self._rows = array("d")
-        self._seen: object = None
-        self._last: Snapshot | None = None
+        self._seen: object = None if last is None else last.fix
+        self._last = last
 
     def take(self, snapshot: Snapshot) -> None:
         """One more snapshot; one without a new fix gives no row."""

@@ -77,6 +77,10 @@ class Lines(Sequence[Event]):
     def __len__(self) -> int:
         return len(self._ends)
 
+    def size_of(self, count: int) -> int:
+        """The length in bytes of the first ``count`` lines."""
+        return int(self._ends[count - 1]) if count else 0
+
     @overload
     def __getitem__(self, index: int) -> Event: ...
 

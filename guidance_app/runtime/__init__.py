@@ -1,7 +1,7 @@
 """Threads, queue and clock around one engine: the live session, recorded, and the replay under a person's hands."""
 
+from guidance_app.runtime.cache import cache_folder
 from guidance_app.runtime.engines import Comparison
-from guidance_app.runtime.indexing import cache_folder
 from guidance_app.runtime.live import LiveSession
 from guidance_app.runtime.manager import SessionManager
 from guidance_app.runtime.recorded import recorded_session, resumed_session

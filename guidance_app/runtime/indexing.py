@@ -1,8 +1,7 @@
 """The index of a recording: its engines every minute, so that any second is half a second away, and its passes' starts.
 
 It is made once, by a process beside the replay that plays meanwhile, and kept in the user's cache folder under a name
-that stands for the content, the documents, the filter and this very program. A cache is never part of a recording:
-what comes from elsewhere (a backup, a bug report) brings none along, as reading one runs what is written in it.
+that stands for the content, the documents, the filter and this very program.
 """
 
 import contextlib
@@ -14,24 +13,20 @@ import multiprocessing
 import os
 import pickle
 import signal
-import sys
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
-from importlib.metadata import PackageNotFoundError, version
 from multiprocessing.connection import Connection
 from pathlib import Path
-from types import MappingProxyType
-from typing import Any, BinaryIO
-
-from platformdirs import user_cache_dir
+from typing import BinaryIO
 
 from guidance_app.model import Event
+from guidance_app.runtime.cache import CachePickler, keep_newest, program_now
 from guidance_app.runtime.checkpoints import Checkpoint, PassStart, PassStarts
 from guidance_app.runtime.engines import Engines, Setup
 from guidance_app.runtime.timeline import Timeline
 
-__all__ = ["CHECKPOINT_S", "Index", "IndexPart", "cache_folder", "index_parts", "steps_between"]
+__all__ = ["CHECKPOINT_S", "Index", "IndexPart", "index_parts", "steps_between"]
 
 log = logging.getLogger(__name__)
 
@@ -41,8 +36,6 @@ LOOK_EVERY = 0.1
 """Seconds until it is noticed that the replay has been closed."""
 KEPT = 20
 """Indexes in the cache folder; beyond that the one not used for longest goes."""
-ENVIRONMENT_NAME = "GUIDANCE_CACHE"
-PACKAGE = Path(__file__).resolve().parent.parent
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,12 +45,6 @@ class IndexPart:
     checkpoint: Checkpoint | None
     starts: tuple[PassStart, ...]
     done: float
-
-
-def cache_folder() -> Path:
-    """Where indexes are kept: GUIDANCE_CACHE, else the user's cache folder."""
-    named = os.environ.get(ENVIRONMENT_NAME, "")
-    return Path(named) if named else Path(user_cache_dir("guidance-app", appauthor=False)) / "indexes"
 
 
 def steps_between(timeline: Timeline, engines: Engines, index: int) -> Iterator[Event]:
@@ -159,7 +146,7 @@ class Index:
             setup.notices,
             None if setup.compare is None else _compared(setup),
             self._every,
-            _program(),
+            program_now(),
         ]
         digest.update(json.dumps(parts).encode())
         return digest.hexdigest()
@@ -240,22 +227,11 @@ class _Feed:
         return self._held.readline()
 
 
-def _read_only(members: dict[Any, Any]) -> MappingProxyType[Any, Any]:
-    return MappingProxyType(members)
-
-
-class _Pickler(pickle.Pickler):
-    """Knows read-only mappings too."""
-
-    def reducer_override(self, held: object) -> Any:
-        return (_read_only, (dict(held),)) if isinstance(held, MappingProxyType) else NotImplemented
-
-
 def _work(sending: Connection, timeline: Timeline, setup: Setup, every: float) -> None:
     """The process: each part as one frame of one pickling, so that what checkpoints share is sent once."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the program that plays
     buffer = io.BytesIO()
-    pickler = _Pickler(buffer, protocol=5)
+    pickler = CachePickler(buffer, protocol=5)
     try:
         for part in index_parts(timeline, setup, every):
             pickler.dump(part)
@@ -293,9 +269,7 @@ class _Kept:
         with self._warned():
             self._file.close()
             self._temporary.replace(self._path)
-            indexes = sorted(self._path.parent.glob("*.index"), key=lambda one: one.stat().st_mtime, reverse=True)
-            for old in indexes[KEPT:]:
-                old.unlink(missing_ok=True)
+            keep_newest(self._path.parent, "*.index", KEPT)
 
     def drop(self) -> None:
         """Leaves nothing behind that is not whole."""
@@ -321,16 +295,3 @@ def _compared(setup: Setup) -> dict[str, object]:
     if setup.compare.settings is not None:
         members["settings"] = setup.compare.settings.model_dump_json()
     return members
-
-
-def _program() -> list[str]:
-    """This program as it is: its sources, and what computes with it."""
-    sources = [f"{path.relative_to(PACKAGE)} {path.stat().st_mtime_ns}" for path in sorted(PACKAGE.rglob("*.py"))]
-    return [sys.version, *(f"{name} {_version(name)}" for name in ("numpy", "numba", "shapely", "pyproj")), *sources]
-
-
-def _version(name: str) -> str:
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return ""

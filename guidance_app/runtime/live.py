@@ -19,6 +19,7 @@ from guidance_app.language import sentence
 from guidance_app.model import RECEIVER, Command, Commanded, Event, LinkState, LinkStatus, Snapshot, SourceDown
 from guidance_app.recording import RecordedDrive
 from guidance_app.runtime.recorder import Recorder
+from guidance_app.runtime.resume_points import KEEP_EVERY, ResumePoint
 from guidance_app.runtime.session import Hearer, Publisher
 from guidance_app.runtime.stepping import stepped
 from guidance_app.runtime.tap import Tap
@@ -68,6 +69,7 @@ class LiveSession:
         self._stop = threading.Event()
         self._begin = 0.0
         self._last = 0.0
+        self._keep_at = KEEP_EVERY
         self._notice: str | None = None
         self._start = time.monotonic()
         self._reader = threading.Thread(target=self._read, name="source", daemon=True)
@@ -80,13 +82,15 @@ class LiveSession:
         source: Source,
         recorder: Recorder | None = None,
         progress: Callable[[float], None] | None = None,
+        point: ResumePoint | None = None,
     ) -> "LiveSession":
         """A session that goes on where the drive was cut off: same documents, work, pass and offsets; the clock too.
 
-        Returns when all inputs have been taken again; ``progress`` hears parts of 1 meanwhile.
+        Returns when all inputs have been taken again, those behind ``point`` where one was kept; ``progress`` hears
+        parts of 1 meanwhile.
         """
         session = cls(drive.job, source, drive.filter_name, drive.settings, recorder=recorder, notices=drive.notices)
-        session._take_again(drive, progress)
+        session._take_again(drive, progress, point)
         return session
 
     def start(self) -> None:
@@ -103,6 +107,8 @@ class LiveSession:
             if thread.is_alive():
                 thread.join(timeout=5.0)
         if self.recorder is not None:
+            if not ended:
+                self._keep_engine()
             self.recorder.close(ended=ended)
 
     def snapshot(self) -> Snapshot:
@@ -121,17 +127,24 @@ class LiveSession:
         """Calls ``hear`` after each new snapshot."""
         return self._publisher.subscribe(hear)
 
-    def _take_again(self, drive: RecordedDrive, progress: Callable[[float], None] | None) -> None:
-        decoded = DecodedEvents(drive.events)
+    def _take_again(
+        self, drive: RecordedDrive, progress: Callable[[float], None] | None, point: ResumePoint | None
+    ) -> None:
+        events = drive.events
+        if point is not None:
+            self._engine, events = point.engine, drive.events[point.count :]
+            self._links.update(dict.fromkeys(point.links))
+        decoded = DecodedEvents(events, hearing=self._engine.hearing)
         look_at = None if self.recorder is None else self.recorder.look_at
         for number, (event, heard) in enumerate(decoded):
             self._links.setdefault(_link_of(event))
             stepped(self._engine, event, look_at, heard)
             if progress is not None and number % TOLD_EVERY == 0:
-                progress(number / len(drive.events))
+                progress(number / len(events))
         if decoded.hearing is not None:
             self._engine.take_hearing(decoded.hearing)
         self._begin = self._last = drive.duration
+        self._keep_at = drive.duration + KEEP_EVERY
         for link in self._links:
             self._step(SourceDown(self._begin, INTERRUPTED, link))
 
@@ -187,6 +200,14 @@ class LiveSession:
             self.recorder.take(event)
         snapshot = stepped(self._engine, event, None if self.recorder is None else self.recorder.look_at)
         self._publish(snapshot)
+        if event.arrival >= self._keep_at:
+            self._keep_engine()
+
+    def _keep_engine(self) -> None:
+        """A copy for the recorder to keep, so that the drive is gone on with in a moment after a stop."""
+        self._keep_at = self._last + KEEP_EVERY
+        if self.recorder is not None:
+            self.recorder.keep(self._engine.fork(), tuple(self._links))
 
     def _in_order(self, event: Event) -> Event:
         """The event with an arrival in whole microseconds, not before that of the last one."""

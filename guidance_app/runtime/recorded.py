@@ -6,8 +6,10 @@ from pathlib import Path
 from guidance_app.documents import Job
 from guidance_app.estimation.filter import FilterSettings
 from guidance_app.language import sentence
+from guidance_app.runtime.cache import cache_folder
 from guidance_app.runtime.live import LiveSession
 from guidance_app.runtime.recorder import Recorder, new_recording
+from guidance_app.runtime.resume_points import ResumePoints
 from guidance_app.sources import Source
 from guidance_app.store.files import StoreError
 from guidance_app.store.recordings_writing import RecordingFolder
@@ -35,7 +37,9 @@ def recorded_session(
 def resumed_session(folder: Path, source: Source, progress: Callable[[float], None] | None = None) -> LiveSession:
     """A session that goes on with the recording in this folder, where it was cut off. Raises ``StoreError``.
 
-    Returns when all inputs have been taken again, some 500 times faster than they were driven.
+    Returns when all inputs have been taken again from the newest resume point on; without one, all of them, some 500
+    times faster than they were driven.
     """
     writing, drive = RecordingFolder.go_on(folder)
-    return LiveSession.resumed(drive, source, Recorder(writing, drive), progress)
+    points = ResumePoints(cache_folder(), folder, drive)
+    return LiveSession.resumed(drive, source, Recorder(writing, drive, points=points), progress, points.found)

@@ -5,6 +5,7 @@ and on the disk after five. A disk that is full, or fails, stops nothing: events
 there is room again; the driver is told, and told early when room gets short.
 """
 
+import hashlib
 import logging
 import queue
 import shutil
@@ -14,11 +15,14 @@ from pathlib import Path
 
 from guidance_app import __version__
 from guidance_app.documents import Job
+from guidance_app.engine import Engine
 from guidance_app.estimation.filter import FilterSettings
 from guidance_app.language import sentence
 from guidance_app.model import Chunk, Commanded, Event, Snapshot
 from guidance_app.recording import LineWriter, RecordedDrive, RecordingMeta, read_lines
+from guidance_app.runtime.cache import cache_folder
 from guidance_app.runtime.columns import LiveColumns
+from guidance_app.runtime.resume_points import ResumePoint, ResumePoints
 from guidance_app.store.files import StoreError, why
 from guidance_app.store.recordings import RecordingSummary, read_recording
 from guidance_app.store.recordings_list import summary_of
@@ -45,7 +49,8 @@ MEGABYTE = 1_000_000
 class Recorder:
     """Writes events into a recording's folder. ``take`` and ``look_at`` return at once; ``close`` waits for the disk.
 
-    ``past`` is what the folder holds already when a drive is gone on with.
+    ``past`` is what the folder holds already when a drive is gone on with; with ``points`` the engine is kept now and
+    then.
     """
 
     def __init__(
@@ -53,6 +58,7 @@ class Recorder:
         folder: RecordingFolder,
         past: RecordedDrive,
         *,
+        points: ResumePoints | None = None,
         low_space: int = LOW_SPACE,
         flush_every: float = FLUSH_EVERY,
         most_waiting: int = MOST_WAITING,
@@ -64,7 +70,10 @@ class Recorder:
         self._most_waiting = most_waiting
         self._writer = LineWriter(past.lines.check)
         self._past = summary_of(past)
-        self._events: queue.SimpleQueue[Event] = queue.SimpleQueue()
+        self._digest = hashlib.sha256(memoryview(past.lines.text)[: past.lines.size])
+        self._points = points
+        self._point: ResumePoint | None = None
+        self._events: queue.SimpleQueue[Event | ResumePoint] = queue.SimpleQueue()
         self._waiting = bytearray()
         self._lengths: list[tuple[int, float]] = []
         self._count = len(past.events)
@@ -72,7 +81,7 @@ class Recorder:
         self._last = past.duration
         self._flushed_to = past.duration
         self._snapshot: Snapshot | None = None
-        self._columns = LiveColumns()
+        self._columns = LiveColumns(points)
         self._trouble: str | None = None
         self._shortage: str | None = None
         self._given_up = False
@@ -89,6 +98,13 @@ class Recorder:
         """What is known now, for the summary and the columns. Every snapshot, so that no fix is missing."""
         self._snapshot = snapshot
         self._columns.look_at(snapshot)
+
+    def keep(self, engine: Engine, links: tuple[str, ...]) -> None:
+        """Keeps the engine as it stands behind all that was taken so far; it must not be used any more elsewhere."""
+        if self._points is not None:
+            point = ResumePoint(engine, links)
+            self._columns.mark(point)
+            self._events.put(point)
 
     @property
     def notice(self) -> str | None:
@@ -149,9 +165,14 @@ class Recorder:
                 return
             if self._given_up:
                 continue
+            if isinstance(event, ResumePoint):
+                event.count, event.digest = self._count, self._digest.hexdigest()
+                self._point = event
+                continue
             self._is_empty = self._is_empty and not _says_something(event)
             line = self._writer.line(event)
             self._waiting += line
+            self._digest.update(line)
             self._lengths.append((len(line), event.arrival))
             self._count += 1
             self._last = event.arrival
@@ -201,12 +222,20 @@ class Recorder:
         except StoreError as error:
             log.warning("%s", error)  # without room for the summary there is none for events, which say so
         else:
+            self._keep_point()
             low = free < self._low_space
             self._shortage = (
                 sentence("The disk is nearly full: {left} MB are left. Make room soon.", left=free // MEGABYTE)
                 if low
                 else None
             )
+
+    def _keep_point(self) -> None:
+        """Once the inputs that it stands for are on the disk."""
+        point, points = self._point, self._points
+        if point is not None and points is not None and not self._waiting:
+            self._point = None
+            points.keep(point)
 
     def _summary(self, *, ended: bool) -> RecordingSummary:
         now = datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
@@ -237,12 +266,16 @@ class Recorder:
         try:
             if self._is_empty:
                 self._folder.discard()
-                return
-            self._folder.pack()
-            self._folder.write_summary(self._summary(ended=True))
-            self._keep_columns()
+            else:
+                self._folder.pack()
+                self._folder.write_summary(self._summary(ended=True))
+                self._keep_columns()
         except StoreError as error:
             log.warning("%s", error)  # it stays as it is, whole and unpacked
+        else:
+            self._columns.close()
+            if self._points is not None:
+                self._points.forget()
 
     def _keep_columns(self) -> None:
         columns = self._columns.whole()
@@ -269,7 +302,8 @@ def new_recording(
         job=job,
     )
     folder = RecordingFolder.create(data, meta)
-    return Recorder(folder, RecordedDrive(folder.path.name, meta, read_lines(b""), None, ""))
+    past = RecordedDrive(folder.path.name, meta, read_lines(b""), None, "")
+    return Recorder(folder, past, points=ResumePoints(cache_folder(), folder.path, past))
 
 
 def _says_something(event: Event) -> bool:
