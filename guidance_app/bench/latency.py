@@ -43,12 +43,18 @@ CLOCKS_MS = 5.0
 """By so much the page's clock may differ from the system's."""
 
 GUIDING = "window.__lightbar?.state === 'guide' && !!window.__viserMutable?.nodeRefFromName?.['/w/here/tractor']"
+MICROSECOND_DIGITS = 6
+
 TAKE_TIMINGS = "window.__lightbar.timings.splice(0)"
 CLOCK = "performance.timeOrigin + performance.now() - Date.now()"
 
 
 class SteadySource:
-    """Epochs at their own pace, stamped when they are handed over, as a receiver's bytes are when they come."""
+    """Epochs at their own pace, stamped when they are handed over, as a receiver's bytes are when they come.
+
+    Stamps are whole microseconds, as the session counts: so a fix bears the very stamp that its bytes were given. One
+    that was rounded down would stand before its own, and the fix be counted with its successor's picture.
+    """
 
     description = "a simulated receiver at 10 Hz"
     duration: float | None = None
@@ -65,7 +71,7 @@ class SteadySource:
         for chunk in self._chunks:
             if stop.wait(max(0.0, start + chunk.arrival - time.monotonic())):
                 return
-            arrival = time.monotonic() - start
+            arrival = round(time.monotonic() - start, MICROSECOND_DIGITS)
             self.handed_over[arrival] = time.time() * 1000.0
             yield Chunk(arrival, chunk.data, chunk.link)
 

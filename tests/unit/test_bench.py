@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from support.recordings import Heard
 
 from guidance_app.bench import growth, latency, recording, review
 from guidance_app.bench.browser import chromium_path
@@ -17,6 +18,7 @@ from guidance_app.bench.streams import day_of_work, first_chunks
 from guidance_app.cli import main
 from guidance_app.commands.options import known_errors
 from guidance_app.model import Chunk, LinkStatus
+from guidance_app.runtime import LiveSession
 
 MICROSECOND_MS = 1e-3
 
@@ -67,6 +69,19 @@ def test_the_source_stamps_each_epoch_when_it_is_handed_over() -> None:
     assert all(given[k].arrival >= chunks[k].arrival for k in range(3))
     assert list(source.handed_over) == [one.arrival for one in given]
     assert list(source.handed_over.values()) == sorted(source.handed_over.values())
+
+
+def test_a_fix_is_found_again_by_the_stamp_that_its_bytes_were_given() -> None:
+    day = day_of_work(hours=0.01)
+    source = SteadySource([Chunk(0.003 * k, one.data) for k, one in enumerate(first_chunks(day, 6.0))])
+    session = LiveSession(day.job, source)
+    heard = Heard(session)
+    session.start()
+    heard.wait(lambda one: one.fix is not None and len(source.handed_over) == 60 and one.fix.arrival > 0.15)
+    session.close()
+    fixes = {one.fix.arrival for one in heard.snapshots if one.fix is not None}
+    assert len(fixes) > 3
+    assert fixes <= set(source.handed_over)
 
 
 def test_a_stopped_source_gives_nothing_more() -> None:

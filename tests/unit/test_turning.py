@@ -3,6 +3,7 @@
 import itertools
 import json
 import math
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -66,6 +67,20 @@ def test_backing_up_over_the_same_way_goes_on_and_keeps_the_drivers_sides():
     assert all(after <= before + QUARTER for before, after in itertools.pairwise(to_go))
     assert to_go[-1] == pytest.approx(2.0, abs=0.1)
     assert all(one.cross_track == pytest.approx(0.3, abs=CENTIMETRE) for one in shown)
+
+
+def test_a_turn_that_was_kept_in_a_file_goes_on_where_it_was():
+    crossing = np.array([[0.0, 0.0], [0.0, 12.0], [12.0, 12.0], [12.0, 6.0], [-6.0, 6.0]])
+    seen = guidance(crossing)
+    turning = turning_of(None, seen, a_pose(0.0), (0.0, 0.0))
+    for north in (2.0, 4.0, 5.8):
+        turning = turning_of(turning, seen, a_pose(0.0), (0.0, north))
+    kept = turning_of(pickle.loads(pickle.dumps(turning)), seen, a_pose(0.0), (0.0, 6.0))
+    gone_on = turning_of(turning, seen, a_pose(0.0), (0.0, 6.0))
+    assert kept is not None
+    assert gone_on is not None
+    assert kept.foot == gone_on.foot
+    assert gone_on.foot.along < 12.0  # on the first way through the crossing, as it came
 
 
 def test_who_leaves_the_path_is_found_again():
