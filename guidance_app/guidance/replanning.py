@@ -48,12 +48,19 @@ class First:
 
     ``backward`` says whether it is driven against the order of its points in the plan; None leaves that open.
     ``worked_to`` is the place (east, north) up to which it has been worked in that direction: only what lies beyond
-    is planned. None plans the whole of it.
+    is planned. ``worked_from`` is that from where on it has been worked, by a driver who now comes the other way: only
+    what lies before is planned. Without either the whole of it is.
     """
 
     number: int
     backward: bool | None = None
     worked_to: tuple[float, float] | None = None
+    worked_from: tuple[float, float] | None = None
+
+    @property
+    def worked_at(self) -> tuple[float, float] | None:
+        """Where the worked part meets the rest; None where nothing is worked."""
+        return self.worked_to or self.worked_from
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,24 +161,23 @@ class _Rest:
         segment = next((each for each in self._works if first and each.number == first.number), None)
         if first is None or segment is None or segment.number in done:
             return None
-        if segment.closed and first.worked_to is None:
+        if segment.closed and first.worked_at is None:
             return Task(segment.kind, segment.number, segment.points[:: -1 if first.backward else 1], closed=True)
         points = np.vstack([segment.points, segment.points[:1]]) if segment.closed else segment.points
         if self._backward(points, first):
             points = points[::-1]
-        if first.worked_to is None:
+        if first.worked_at is None:
             return Task(segment.kind, segment.number, points)
         stroke = Stroke(points)
-        along = float(shapely.line_locate_point(shapely.linestrings(points), shapely.Point(first.worked_to)))
-        if stroke.length - along < SHORTEST:
-            return None
-        return Task(segment.kind, segment.number, stroke.stretch(along, stroke.length))
+        along = float(shapely.line_locate_point(shapely.linestrings(points), shapely.Point(first.worked_at)))
+        start, end = (0.0, along) if first.worked_to is None else (along, stroke.length)
+        return None if end - start < SHORTEST else Task(segment.kind, segment.number, stroke.stretch(start, end))
 
     def _backward(self, points: FloatArray, first: First) -> bool:
         if first.backward is not None:
             return first.backward
         here = (self._standing.east, self._standing.north)
-        return first.worked_to is None and math.dist(points[-1], here) < math.dist(points[0], here)
+        return first.worked_at is None and math.dist(points[-1], here) < math.dist(points[0], here)
 
     def _groups(self) -> Iterator[list[Segment]]:
         """Passes by number, done or not, cut where the next one is not the neighbour of the one before."""

@@ -39,13 +39,15 @@ def _carry(carried: Progress, spans: Stretches, old: GuideLine, new: GuideLine) 
             carried.add(new.key, low, high)
 
 
-def rest_of(line: GuideLine, spans: Stretches, *, against: bool, behind: float) -> First:
+def rest_of(line: GuideLine, spans: Stretches, *, against: bool, turned: bool, behind: float) -> First:
     """A pass being worked, as what comes first of the rest; the implement works ``behind`` the guided point.
 
+    ``turned`` by the driver, it was worked the other way until now: its rest ends where that work did.
     A lap worked in several stretches is whole again: its rest is not one line.
     """
     if not spans or (line.target.closed and len(spans) > 1):
         return First(line.target.number, against)
     low, high = spans[0][0], spans[-1][1]
     back = min(behind, high - low)
-    return First(line.target.number, against, line.polyline.at(low + back if against else high - back))
+    place = line.polyline.at(low + back if against != turned else high - back)
+    return First(line.target.number, against, *((None, place) if turned else (place,)))

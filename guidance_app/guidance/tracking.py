@@ -267,7 +267,7 @@ class Tracker:
         if line is None or line.key in self._progress.done:
             return None
         if spans := self._progress.spans(line.key):
-            return rest_of(line, spans, against=against, behind=self._behind)
+            return rest_of(line, spans, against=against, turned=self._travel.wished, behind=self._behind)
         if self._on or self._travel.wished:
             return First(line.target.number, against)
         return First(line.target.number) if self._choice.held else None
@@ -367,6 +367,7 @@ class Tracker:
             on_pass=reading.on_pass,
             done=self.done,
             count=self._itinerary.count,
+            mirrored=self._sense() < 0,
         )
 
     def _remaining(self, reading: Reading) -> float | None:

@@ -59,7 +59,8 @@ class Guidance:
     """The guided point against the target pass. ``cross_track`` is positive right of the pass in travel direction.
 
     ``along_track`` runs from where the pass is entered in the present direction of travel; ``remaining`` is what is
-    left to its end, None on an endless line. ``against`` says that the pass is driven against its points' order.
+    left to its end, None on an endless line. ``against`` says that the pass is driven against its points' order,
+    ``mirrored`` that the right of line offsets (that of the guidance line) is the left in the direction of travel.
     """
 
     target: Pass
@@ -73,6 +74,7 @@ class Guidance:
     on_pass: bool = False
     done: frozenset[int] = frozenset()
     count: int | None = None
+    mirrored: bool = False
 
 
 class SegmentKind(StrEnum):

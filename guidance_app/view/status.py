@@ -4,7 +4,7 @@ Absent is a dash. What ages shows its age. Nothing here decides what to do; it o
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from guidance_app.documents import Units
@@ -16,7 +16,6 @@ from guidance_app.model import (
     LinkState,
     LinkStatus,
     OffsetKind,
-    OffsetRecord,
     Snapshot,
 )
 from guidance_app.view.bar_states import QUALITIES, STALE_AFTER_S
@@ -138,7 +137,7 @@ def work_view(snapshot: Snapshot, now: float, units: Units, words: Words) -> Wor
         fix_level=level,
         work=work_press(snapshot, words),
         pass_words=pass_words(snapshot.guidance, words),
-        line_words=words("Moved {distance}", distance=signed_text(line_offset(snapshot.offsets), units, words)),
+        line_words=words("Moved {distance}", distance=signed_text(line_offset(snapshot), units, words)),
         notices=(*beside_notices(snapshot, now, words), *(words.say(notice) for notice in snapshot.notices)),
     )
 
@@ -203,9 +202,14 @@ def neighbour(snapshot: Snapshot, step: int) -> int | None:
     return min(numbers, key=lambda number: abs(number - at), default=None)
 
 
-def line_offset(offsets: Iterable[OffsetRecord]) -> float:
-    """How far the lines stand from where they were planned, metres to the right."""
-    return sum(offset.metres for offset in offsets if offset.kind in LINE_OFFSETS)
+def line_offset(snapshot: Snapshot) -> float:
+    """How far the lines stand from where they were planned, metres to the right as the tractor drives."""
+    return rightward(snapshot) * sum(offset.metres for offset in snapshot.offsets if offset.kind in LINE_OFFSETS)
+
+
+def rightward(snapshot: Snapshot) -> float:
+    """+1 where line offsets to the right are so for the driver too, -1 on the way back."""
+    return -1.0 if snapshot.guidance is not None and snapshot.guidance.mirrored else 1.0
 
 
 # --- fix and link --------------------------------------------------------------------------------------------------
@@ -263,7 +267,7 @@ def info_view(snapshot: Snapshot, now: float, units: Units, words: Words) -> Inf
         (words("Corrections"), ABSENT if correction is None else words("{age} old", age=age_words(correction, words))),
         (words("Filter"), snapshot.filter_name or ABSENT),
         (words("Uncertainty"), _uncertainty(snapshot, units, words)),
-        (words("Offsets"), _offsets(snapshot.offsets, units, words)),
+        (words("Offsets"), _offsets(snapshot, units, words)),
     )
     return InfoView(state, level, rows)
 
@@ -311,12 +315,13 @@ OFFSETS: Mapping[OffsetKind, str] = {
 }
 
 
-def _offsets(offsets: Iterable[OffsetRecord], units: Units, words: Words) -> str:
+def _offsets(snapshot: Snapshot, units: Units, words: Words) -> str:
+    side = rightward(snapshot)
     parts = [
         f"{words(OFFSETS[offset.kind])} {offset_text(math.hypot(offset.east, offset.north), units, words)}"
         if offset.kind in POSITION_OFFSETS
-        else f"{words(OFFSETS[offset.kind])} {signed_text(offset.metres, units, words)}"
-        for offset in offsets
+        else f"{words(OFFSETS[offset.kind])} {signed_text(side * offset.metres, units, words)}"
+        for offset in snapshot.offsets
     ]
     return ", ".join(parts) or words("none")
 

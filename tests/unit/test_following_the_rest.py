@@ -106,6 +106,25 @@ def test_turned_round_by_the_driver_a_pass_is_planned_that_way() -> None:
     assert math.dist(begun.points[0], first[-1]) < MILLIMETRE
 
 
+@pytest.mark.parametrize("times", [1, 2])
+def test_turned_round_on_a_half_worked_pass_its_rest_is_worked_from_the_other_end(times: int) -> None:
+    tracker = Tracker(PLAN, PLAN.spacing)
+    pose, before = driven(tracker, WORKS[:1], 0.4)
+    assert before.remaining is not None
+    rest = PLAN
+    for _ in range(times):
+        assert tracker.reverse()
+        rest = rest_of(tracker, pose, rest)
+        tracker.follow(rest)
+    begun = next(each for each in rest.segments if each.implement_down)
+    assert begun.number == WORKS[0].number
+    assert begun.length == pytest.approx(before.remaining, abs=MILLIMETRE)
+    end, here = WORKS[0].points[-1], (pose.east, pose.north)
+    first, last = (begun.points[0], begun.points[-1])[:: 1 if times == 1 else -1]
+    assert math.dist(first, end) < MILLIMETRE
+    assert math.dist(last, here) < MILLIMETRE
+
+
 def test_after_a_crash_a_new_tracker_knows_what_is_done() -> None:
     tracker = Tracker(PLAN, PLAN.spacing)
     pose, guidance = driven(tracker, WORKS[:4])

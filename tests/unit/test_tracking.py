@@ -366,6 +366,8 @@ def test_a_nudge_moves_the_passes_of_a_plan_to_one_side_of_the_ground() -> None:
     driven = drive_plan(tracker, plan, start=10.0)
     errors = {segment.number: round(one.cross_track, 6) for segment, one in driven if segment.kind is SegmentKind.PASS}
     assert errors == {1: -0.3, 2: 0.3, 3: -0.3}
+    sides = {segment.number: one.mirrored for segment, one in driven if segment.kind is SegmentKind.PASS}
+    assert sides == {1: False, 2: True, 3: False}
     first = driven[0][1].target.points
     assert first[:, 0] == pytest.approx(0.3)
 

@@ -110,12 +110,17 @@ def test_line_offsets_add_up_and_positions_do_not_count() -> None:
         OffsetRecord(OffsetKind.LINE_HERE, 2.0, metres=-0.10),
         OffsetRecord(OffsetKind.MARK, 3.0, east=3.0, north=4.0),
     )
-    assert line_offset(offsets) == pytest.approx(-0.04)
     moved = replace(field_snapshot(), offsets=offsets)
+    assert line_offset(moved) == pytest.approx(-0.04)
     assert work_view(moved, 100.0, Units.METRIC, ENGLISH).line_words == "Moved 4 cm left"
     assert work_view(field_snapshot(), 100.0, Units.METRIC, ENGLISH).line_words == "Moved 0 cm"
     rows = dict(info_view(moved, 100.0, Units.METRIC, ENGLISH).rows)
     assert rows["Offsets"] == "nudge 6 cm right, line here 10 cm left, mark 5.00 m"
+    assert moved.guidance is not None
+    back = replace(moved, guidance=replace(moved.guidance, mirrored=True))
+    assert work_view(back, 100.0, Units.METRIC, ENGLISH).line_words == "Moved 4 cm right"
+    rows = dict(info_view(back, 100.0, Units.METRIC, ENGLISH).rows)
+    assert rows["Offsets"] == "nudge 6 cm left, line here 10 cm right, mark 5.00 m"
 
 
 def test_nudges_go_from_left_to_right_in_the_drivers_unit() -> None:
