@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from guidance_app.guidance.lap import Lap
+from guidance_app.guidance.parts import next_laps
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.guidance.room import TOUCH, Room
 from guidance_app.guidance.task import Task, side_tasks
@@ -69,15 +70,18 @@ class Joiner:
 
         ``last`` is the pose (3,) from which they are reached, or only the place (2,) near which they begin.
         """
-        nests: dict[int, list[Lap]] = {}
-        for lap in sorted(laps, key=lambda lap: lap.place, reverse=not inward):
-            nests.setdefault(lap.nest, []).append(lap)
+        left = list(laps)
+        nest: int | None = None
         tasks: list[Task] = []
-        while nests:
-            nest = min(nests, key=lambda each: float(np.hypot(*(nests[each][0].points - last[:2]).T).min()))
-            for lap in nests.pop(nest):
-                tasks.extend(self._lap_tasks(lap, last, number + len(tasks)))
-                last = tasks[-1].last
+        while left:
+            able = [lap for lap in left if lap.nest == nest] or left
+            nests = [[lap for lap in able if lap.nest == one] for one in dict.fromkeys(lap.nest for lap in able)]
+            able = [lap for one in nests for lap in next_laps(one, inward=inward)]
+            lap = min(able, key=lambda each: float(np.hypot(*(each.points - last[:2]).T).min()))
+            left.remove(lap)
+            nest = lap.nest
+            tasks.extend(self._lap_tasks(lap, last, number + len(tasks)))
+            last = tasks[-1].last
         return tasks
 
     def _lap_tasks(self, lap: Lap, last: FloatArray, number: int) -> list[Task]:

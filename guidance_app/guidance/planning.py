@@ -5,13 +5,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
 import shapely
 from shapely import Polygon
 
 from guidance_app.documents import Method
-from guidance_app.guidance.bundle import Run, runs_of
 from guidance_app.guidance.costs import costs_of, joins_of
+from guidance_app.guidance.driving_order import tasks_in_order
 from guidance_app.guidance.ground import ground_of
 from guidance_app.guidance.joining import Joiner
 from guidance_app.guidance.layout import Layout, layout_of
@@ -19,7 +18,6 @@ from guidance_app.guidance.pattern import OperationMethod, PatternOptions
 from guidance_app.guidance.patterns import METHODS
 from guidance_app.guidance.request import PlanError, PlanRequest
 from guidance_app.guidance.room import Room
-from guidance_app.guidance.route import route
 from guidance_app.guidance.task import Task
 from guidance_app.guidance.turn import Turn
 from guidance_app.guidance.turns import Turner
@@ -77,7 +75,7 @@ def plan_on(groundwork: Groundwork, request: PlanRequest) -> Plan:
     layout, joiner = groundwork.layout, groundwork.joiner
     method, options = _method(request)
     for _ in range(ROUNDS):
-        tasks = _tasks(layout, joiner, (method, options), request)
+        tasks = tasks_in_order(layout, joiner, (method, options), request)
         gone = _not_worth_it(tasks, joiner.turns(tasks), layout)
         if not gone:
             break
@@ -123,24 +121,6 @@ def _method(request: PlanRequest) -> tuple[OperationMethod, PatternOptions]:
     return method, method.options_from(request.options)
 
 
-def _tasks(
-    layout: Layout, joiner: Joiner, way: tuple[OperationMethod, PatternOptions], request: PlanRequest
-) -> list[Task]:
-    """Laps and passes in driving order; passes have the lower numbers whichever comes first."""
-    method, options = way
-    choices = [runs_of(bundle, method.pass_order(len(bundle.lines), options)) for bundle in layout.bundles]
-    count = sum(len(bundle.lines) for bundle in layout.bundles)
-    laps_first = method.laps_inward(options) if request.method is Method.SURROUNDING else request.laps_first
-    start = request.start if request.start is not None else _corner_of(layout.ground)
-    laps = layout.headland.laps
-    if laps_first:
-        first = joiner.round_tasks(laps, np.array(start), count + 1, inward=True)
-        last = (float(first[-1].last[0]), float(first[-1].last[1])) if first else request.start
-        return first + _passes(choices, request, last)
-    passes = _passes(choices, request, request.start)
-    return passes + joiner.round_tasks(laps, passes[-1].last if passes else np.array(start), count + 1, inward=False)
-
-
 def _not_worth_it(tasks: Sequence[Task], turns: Sequence[Turn], layout: Layout) -> list[FloatArray]:
     """The lines of small spare passes that cannot be reached or left: they stay unworked, and nobody is sent there."""
     gone = []
@@ -156,19 +136,6 @@ def _not_worth_it(tasks: Sequence[Task], turns: Sequence[Turn], layout: Layout) 
 def _small(task: Task, layout: Layout) -> bool:
     length = math.dist(*task.points)
     return length < SMALL_WIDTHS * layout.width or length * layout.width < SMALL_PART * layout.ground.area
-
-
-def _corner_of(ground: Polygon) -> tuple[float, float]:
-    """The first corner of the boundary, where work begins when nobody says where."""
-    east, north = ground.exterior.coords[0][:2]
-    return east, north
-
-
-def _passes(choices: Sequence[Sequence[Run]], request: PlanRequest, start: tuple[float, float] | None) -> list[Task]:
-    tasks: list[Task] = []
-    for run in route(choices, request, start):
-        tasks.extend(run.tasks(len(tasks)))
-    return tasks
 
 
 def _warnings(segments: Sequence[Segment], layout: Layout, request: PlanRequest) -> list[str]:

@@ -1,8 +1,9 @@
 """What is left of a plan, planned again: after a pause, a crash, or a driver who drives another pass than planned.
 
-Passes keep their lines and numbers, the method is kept, and what is done stays done. The rest of each bundle goes on in
-the plan's order, or backward through it, or anew in the method's order, whichever takes less driving from where the
-tractor stands. Nothing is searched for that the plan knows already, so that it takes milliseconds.
+Passes keep their lines and numbers, the method is kept, and what is done stays done; the parts of the field follow each
+other as in the plan. The rest of each bundle goes on in the plan's order, or backward through it, or anew in the
+method's order, whichever takes less driving from where the tractor stands. Nothing is searched for that the plan knows
+already, so that it takes milliseconds.
 """
 
 import math
@@ -140,9 +141,9 @@ class _Rest:
         here = np.array([standing.east, standing.north]) if self._first is None else self._first.last[:2]
         tasks = [] if self._first is None else [self._first]
         for numbers in (self._left - standing.later, self._left & standing.later):
-            more = self._ordered(numbers, (float(here[0]), float(here[1])))
-            tasks.extend(more)
-            here = tasks[-1].last[:2] if tasks else here
+            for part in _parts_of(self._works):
+                tasks.extend(self._ordered(numbers & part, (float(here[0]), float(here[1]))))
+                here = tasks[-1].last[:2] if tasks else here
         return tasks
 
     def _ordered(self, numbers: set[int], here: tuple[float, float]) -> list[Task]:
@@ -222,6 +223,18 @@ class _Rest:
                 yield Task(each.kind, each.number, each.points, each.closed, _as_turn(turn) if follows else None)
             before = each.number if each.kind is SegmentKind.LAP else None
             turn = []
+
+
+def _parts_of(works: Sequence[Segment]) -> list[set[int]]:
+    """The numbers of each part of the field, in the plan's order: its passes and then its laps, or the other way."""
+    parts: list[set[int]] = []
+    before: SegmentKind | None = None
+    for each in works:
+        if not parts or (each.kind is works[0].kind and before is not each.kind):
+            parts.append(set())
+        parts[-1].add(each.number)
+        before = each.kind
+    return parts
 
 
 def _turned(planned: Sequence[int], driven_at: Sequence[int], at: int | None) -> Iterator[Sequence[int]]:

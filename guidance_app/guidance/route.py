@@ -8,7 +8,7 @@ from guidance_app.guidance.bundle import Run
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.model import FloatArray
 
-__all__ = ["route"]
+__all__ = ["preferred", "route"]
 
 MOST_EXACT = 5
 """Bundles up to which every order is compared; with more the nearest is taken next."""
@@ -23,13 +23,13 @@ def route(choices: Sequence[Sequence[Run]], request: PlanRequest, start: tuple[f
     """One way from each group, from ``start`` towards the request's exit, with little driving between."""
     if not choices:
         return []
-    first = _preferred(choices, request)
+    first = preferred(choices, request)
     if len(choices) <= MOST_EXACT:
         return _best_of_all(choices, first, (start, request.exit))
     return _nearest_next(choices, first, (start, request.exit))
 
 
-def _preferred(choices: Sequence[Sequence[Run]], request: PlanRequest) -> list[tuple[int, int]]:
+def preferred(choices: Sequence[Sequence[Run]], request: PlanRequest) -> list[tuple[int, int]]:
     """The runs with which the work may begin, as (bundle, way); every one when any corner will do."""
     everything = [(cell, way) for cell, ways in enumerate(choices) for way in range(len(ways))]
     if request.start_corner == "nearest":
