@@ -54,7 +54,7 @@ ARC_STEP = math.radians(6.0)
 ROUNDS = 200
 """Bends replaced at most in one line."""
 
-MEANS = 300
+MEANS = 150
 """Means taken at most in one line: more would move it by more than decimetres."""
 
 

@@ -13,7 +13,7 @@ from shapely import Polygon
 
 from guidance_app.guidance.manoeuvres import Manoeuvres, poses_along
 from guidance_app.guidance.request import Body
-from guidance_app.guidance.room_kernels import Ints, edges_by_cell, moves_clear, poses_clear
+from guidance_app.guidance.room_kernels import Cells, cells_away, edges_by_cell, moves_clear, poses_clear
 from guidance_app.model import FloatArray
 
 __all__ = ["TOUCH", "Room"]
@@ -85,7 +85,7 @@ class Room:
         return np.stack([east, north], axis=-1)
 
 
-def _gridded(ground: Polygon) -> tuple[FloatArray, FloatArray, tuple[int, int, Ints, Ints]]:
+def _gridded(ground: Polygon) -> tuple[FloatArray, FloatArray, Cells]:
     """The boundary's edges (E, 4), and the grid by whose cells they are found."""
     rings = [shapely.get_coordinates(ring) for ring in (ground.exterior, *ground.interiors)]
     edges = np.concatenate([np.column_stack([ring[:-1], ring[1:]]) for ring in rings])
@@ -94,7 +94,7 @@ def _gridded(ground: Polygon) -> tuple[FloatArray, FloatArray, tuple[int, int, I
     columns, rows = math.ceil((east - west) / size), math.ceil((north - south) / size)
     grid = np.array([west, south, size])
     begins, listed = edges_by_cell(edges, grid, columns, rows)
-    return edges, grid, (columns, rows, begins, listed)
+    return edges, grid, (columns, rows, begins, listed, cells_away(begins, columns, rows))
 
 
 def _outline(body: Body) -> FloatArray:

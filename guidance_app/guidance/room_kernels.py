@@ -1,7 +1,7 @@
 """Compiled check whether an outline driven along a path crosses a boundary. ``room.py`` is the only user.
 
-The boundary's edges are kept by the cells of a grid, so that a short line is compared with the few edges near it. What
-touches an edge counts as crossing it.
+The boundary's edges are kept by the cells of a grid, so that a short line is compared with the few edges near it; where
+no edge is near, nothing is compared at all. What touches an edge counts as crossing it.
 """
 
 import math
@@ -12,10 +12,13 @@ from numpy.typing import NDArray
 
 from guidance_app.model import FloatArray
 
-__all__ = ["Bools", "Ints", "edges_by_cell", "moves_clear", "poses_clear"]
+__all__ = ["Bools", "Cells", "Ints", "cells_away", "edges_by_cell", "moves_clear", "poses_clear"]
 
 Ints = NDArray[np.int32]
 Bools = NDArray[np.bool_]
+
+Cells = tuple[int, int, Ints, Ints, Ints]
+"""Columns, rows, where each cell's edges begin in a list, the list, and how many cells away the nearest edge is."""
 
 SLACK = 1e-6
 """Metres by which an edge is taken to reach into a neighbouring cell, against rounding."""
@@ -71,6 +74,34 @@ def edges_by_cell(edges: FloatArray, grid: FloatArray, columns: int, rows: int) 
 
 
 @numba.njit(cache=True, error_model="numpy")
+def cells_away(begins: Ints, columns: int, rows: int) -> Ints:
+    """For each cell (columns x rows) how many steps, straight or diagonal, lead to the nearest one with an edge."""
+    away = np.full(columns * rows, columns + rows, dtype=np.int32)
+    for forward in (True, False):
+        for number in range(columns * rows):
+            cell = number if forward else columns * rows - 1 - number
+            if begins[cell + 1] > begins[cell]:
+                away[cell] = 0
+                continue
+            column, row = cell // rows, cell % rows
+            back = -1 if forward else 1
+            for aside, on in ((back, -1), (back, 0), (back, 1), (0, back)):
+                if 0 <= column + aside < columns and 0 <= row + on < rows:
+                    away[cell] = min(away[cell], away[cell + aside * rows + on] + 1)
+    return away
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _room(east: float, north: float, grid: FloatArray, cells: Cells) -> float:
+    """Metres round a place in which there is no edge; beyond the grid none."""
+    columns, rows, _, _, away = cells
+    column, row = math.floor((east - grid[0]) / grid[2]), math.floor((north - grid[1]) / grid[2])
+    if not (0 <= column < columns and 0 <= row < rows):
+        return 0.0
+    return float((away[column * rows + row] - 1) * grid[2] - SLACK)
+
+
+@numba.njit(cache=True, error_model="numpy")
 def _side(one: FloatArray, other: FloatArray, east: float, north: float) -> float:
     return float((other[0] - one[0]) * (north - one[1]) - (other[1] - one[1]) * (east - one[0]))
 
@@ -87,11 +118,9 @@ def _meets(one: FloatArray, other: FloatArray, edge: FloatArray) -> bool:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _clear(
-    one: FloatArray, other: FloatArray, edges: FloatArray, grid: FloatArray, cells: tuple[int, int, Ints, Ints]
-) -> bool:
+def _clear(one: FloatArray, other: FloatArray, edges: FloatArray, grid: FloatArray, cells: Cells) -> bool:
     """Whether the line between two places touches no edge."""
-    columns, rows, begins, listed = cells
+    columns, rows, begins, listed, _ = cells
     left = _cell(min(one[0], other[0]), grid[0], grid[2], columns)
     right = _cell(max(one[0], other[0]), grid[0], grid[2], columns)
     low = _cell(min(one[1], other[1]), grid[1], grid[2], rows)
@@ -115,11 +144,19 @@ def _laid(outline: FloatArray, east: float, north: float, yaw: float, corners: F
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _ring_clear(corners: FloatArray, edges: FloatArray, grid: FloatArray, cells: tuple[int, int, Ints, Ints]) -> bool:
+def _ring_clear(corners: FloatArray, edges: FloatArray, grid: FloatArray, cells: Cells) -> bool:
     for corner in range(len(corners) - 1):  # noqa: SIM110 - the compiler knows no generators
         if not _clear(corners[corner], corners[corner + 1], edges, grid, cells):
             return False
     return True
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _swept_clear(before: FloatArray, after: FloatArray, edges: FloatArray, grid: FloatArray, cells: Cells) -> bool:
+    for corner in range(len(after) - 1):
+        if not _clear(before[corner], after[corner], edges, grid, cells):
+            return False
+    return bool(_ring_clear(after, edges, grid, cells))
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -128,7 +165,7 @@ def poses_clear(
     outline: FloatArray,
     edges: FloatArray,
     grid: FloatArray,
-    cells: tuple[int, int, Ints, Ints],
+    cells: Cells,
 ) -> Bools:
     """For poses (M, 3) whether the outline (B, 2), closed, touches no edge there."""
     clear = np.zeros(len(poses), dtype=np.bool_)
@@ -154,32 +191,43 @@ def _advanced(pose: FloatArray, turn: float, length: float, radius: float) -> No
 
 
 @numba.njit(cache=True, error_model="numpy")
+def _reach(outline: FloatArray) -> float:
+    """Metres from the working centre to the outline's farthest corner."""
+    return float(np.sqrt((outline**2).sum(axis=1).max()))
+
+
+@numba.njit(cache=True, error_model="numpy")
 def _move_clear(
     pose: FloatArray,
     move: tuple[FloatArray, FloatArray, float, float],
     outline: FloatArray,
     edges: FloatArray,
     grid: FloatArray,
-    cells: tuple[int, int, Ints, Ints],
+    cells: Cells,
 ) -> bool:
-    """The outline along one move from ``pose``, which is moved: at its places, and the corners' ways between them."""
+    """The outline along one move from ``pose``, which is moved: at its places, and the corners' ways between them.
+
+    As many places are passed over at a time as there is room for.
+    """
     turns, lengths, radius, step = move
+    reach = _reach(outline)
     before, corners = np.zeros_like(outline), np.zeros_like(outline)
     _laid(outline, pose[0], pose[1], pose[2], before)
     if not _ring_clear(before, edges, grid, cells):
         return False
     for piece in range(len(lengths)):
-        size = abs(lengths[piece])
-        count = math.ceil(size / step)
-        for _ in range(count):
-            _advanced(pose, turns[piece], lengths[piece] / count, radius)
-            _laid(outline, pose[0], pose[1], pose[2], corners)
-            for corner in range(len(corners) - 1):
-                if not _clear(before[corner], corners[corner], edges, grid, cells):
+        count = math.ceil(abs(lengths[piece]) / step)
+        place = 0
+        while place < count:
+            free = int((_room(pose[0], pose[1], grid, cells) - reach) / step)
+            places = min(max(free, 1), count - place)
+            _laid(outline, pose[0], pose[1], pose[2], before)
+            _advanced(pose, turns[piece], places * lengths[piece] / count, radius)
+            place += places
+            if free < 1:
+                _laid(outline, pose[0], pose[1], pose[2], corners)
+                if not _swept_clear(before, corners, edges, grid, cells):
                     return False
-            if not _ring_clear(corners, edges, grid, cells):
-                return False
-            before[:] = corners
     return True
 
 
@@ -190,7 +238,7 @@ def moves_clear(
     outline: FloatArray,
     edges: FloatArray,
     grid: FloatArray,
-    cells: tuple[int, int, Ints, Ints],
+    cells: Cells,
 ) -> Bools:
     """For each move whether the outline touches no edge all along.
 

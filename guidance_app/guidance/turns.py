@@ -165,10 +165,11 @@ class Turner:
             fits = np.isfinite(total[left[:, None], tried])
             fits[fits] = self.room.fits(moves.take(rows[fits]))
             good = fits.any(axis=1)
-            chosen = moves.take(rows[good, fits[good].argmax(axis=1)])
-            for place, turn in zip(left[good], turns_along(chosen), strict=True):
-                found[place] = turn
-            left = left[~good]
+            if good.any():
+                chosen = moves.take(rows[good, fits[good].argmax(axis=1)])
+                for place, turn in zip(left[good], turns_along(chosen), strict=True):
+                    found[place] = turn
+                left = left[~good]
             low, many = low + many, min(2 * many, MOST_AT_ONCE)
         return found
 
