@@ -12,6 +12,8 @@ in this order:
    two metres, takes over. If it is not the next of a plan's order under way, it has to be so for three seconds and
    ten metres: a lap's square corner or a way along another pass is not a wish to drive that one. On the planned way
    to the target nothing takes over.
+5. Without a plan, who drives across the passes with the implement up and has left the target behind is shown the
+   nearest one, done or not: where the tractor is, not what it has to do next.
 """
 
 import copy
@@ -39,6 +41,9 @@ ALONG = math.radians(30)
 CLEARLY_NEARER = 0.2
 """In swath spacings: by so much another pass has to be nearer."""
 
+BEHIND = 1.2
+"""In swath spacings: so far away the target has been left behind by who drives across."""
+
 SETTLED = (1.0, 2.0)
 SETTLED_AGAINST_PLAN = (3.0, 10.0)
 """For so long (s) and so far (m) another pass has to be the better one."""
@@ -62,6 +67,7 @@ class Choice:
         self._was_working = False
         self._better: int | None = None
         self._better_since = (0.0, 0.0, 0.0)
+        self._crossed: int | None = None
 
     def fork(self) -> "Choice":
         """An independent copy."""
@@ -81,7 +87,7 @@ class Choice:
         if self.engaged and not _lap_closed(reading.line, progress):
             self._better = None
             return key
-        if _is_done(reading.line, progress) and not self.held and (self.engaged or self._has_left(reading)):
+        if self._is_over(reading, progress):
             following = self.itinerary.following(key, progress.done, side or _turned_to(reading))
             return key if following is None else following
         if lowered and not reading.on_pass:
@@ -89,6 +95,9 @@ class Choice:
         if self.held or self._on_the_way(seen, key):
             self._better = None
             return key
+        if self._has_crossed_over(seen, reading):
+            self._crossed = self._nearest(seen, key)
+            return self._crossed
         return self._settled(seen, reading, progress)
 
     def _engage(self, seen: Seen, reading: Reading) -> None:
@@ -99,6 +108,12 @@ class Choice:
             self.engaged = False
         elif reading.on_pass:
             self.engaged, self._engaged_against = True, reading.against
+
+    def _is_over(self, reading: Reading, progress: Progress) -> bool:
+        """Whether the target is done and has been left; one that is only driven across has not been driven."""
+        if self.held or not _is_done(reading.line, progress):
+            return False
+        return self.engaged or (reading.line.key != self._crossed and self._has_left(reading))
 
     def _has_left(self, reading: Reading) -> bool:
         """The done target: at its end, turned away, or turned round on the spot."""
@@ -119,6 +134,13 @@ class Choice:
 
     def _clearly_nearer(self, distance: float, reading: Reading) -> bool:
         return distance <= reading.foot.distance - CLEARLY_NEARER * self.spacing
+
+    def _has_crossed_over(self, seen: Seen, reading: Reading) -> bool:
+        across = seen.heading_known and not seen.working and reading.off_axis > LEFT
+        return across and not self.itinerary.planned_direction and reading.foot.distance > BEHIND * self.spacing
+
+    def _nearest(self, seen: Seen, key: int) -> int:
+        return next(iter(self.itinerary.candidates(seen.east, seen.north)), key)
 
     def _settled(self, seen: Seen, reading: Reading, progress: Progress) -> int:
         key = reading.line.key

@@ -27,7 +27,9 @@ TURN_SOON_S = 10.0
 TURN_NOW_S = 3.0
 
 
-MOVING = frozenset({BarState.GUIDE, BarState.NO_LINE, BarState.NO_DIRECTION, BarState.MEASURING, BarState.FINISHED})
+MOVING = frozenset(
+    {BarState.GUIDE, BarState.NO_LINE, BarState.ACROSS, BarState.NO_DIRECTION, BarState.MEASURING, BarState.FINISHED}
+)
 """States in which the pose is of now, so that the speed may be shown."""
 
 
@@ -115,6 +117,8 @@ def _reason(snapshot: Snapshot, state: BarState, fix_age: float | None, units: U
     begun = snapshot.line_begun
     if state is BarState.NO_LINE and begun is not None:
         return line_begun_words(begun, units, words)
+    if state is BarState.ACROSS and snapshot.guidance is not None:
+        return words("across line {number}", number=snapshot.guidance.target.number)
     return reason_of(state, snapshot.link, fix_age, words)
 
 

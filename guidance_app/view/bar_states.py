@@ -1,12 +1,16 @@
 """Whether there is something to steer by, and if not, why: the states of the two bars, and their words. Pure."""
 
+import math
 from collections.abc import Mapping
 from enum import StrEnum
 
 from guidance_app.language import Words, message
-from guidance_app.model import FixQuality, LinkState, LinkStatus, SessionState, Snapshot
+from guidance_app.model import FixQuality, Guidance, LinkState, LinkStatus, SessionState, Snapshot
 
 __all__ = ["QUALITIES", "REASONS", "STALE_AFTER_S", "TROUBLES", "BarState", "reason_of", "state_of"]
+
+ACROSS = math.sin(math.radians(60))
+"""Turned farther from a line nobody drives along it."""
 
 STALE_AFTER_S = 1.0
 """A fix older than this, or than two intervals of a slower receiver, is no longer steered by."""
@@ -26,6 +30,7 @@ class BarState(StrEnum):
     NOT_READY = "not-ready"
     NO_DIRECTION = "no-direction"
     NO_LINE = "no-line"
+    ACROSS = "across"
     MEASURING = "measuring"
     FINISHED = "finished"
     IDLE = "idle"
@@ -41,6 +46,7 @@ REASONS = {
     BarState.NOT_READY: message("finding the position"),
     BarState.NO_DIRECTION: message("direction unknown: drive 2 m"),
     BarState.NO_LINE: message("no line"),
+    BarState.ACROSS: message("across the lines"),
     BarState.MEASURING: message("measuring: stand still"),
     BarState.FINISHED: message("the drive has ended"),
     BarState.IDLE: message("no receiver in use: start a drive"),
@@ -93,7 +99,16 @@ def state_of(snapshot: Snapshot, fix_age: float | None) -> BarState:
         return STANDING_STATES[snapshot.state]
     if not snapshot.pose.heading_known:
         return BarState.NO_DIRECTION
-    return BarState.NO_LINE if snapshot.guidance is None else BarState.GUIDE
+    if snapshot.guidance is None:
+        return BarState.NO_LINE
+    return BarState.ACROSS if _leads_across(snapshot.guidance) else BarState.GUIDE
+
+
+def _leads_across(guidance: Guidance) -> bool:
+    """Whether the tractor drives away from the target across the lines, where no plan says which it looks for."""
+    aside = math.sin(guidance.heading_error)
+    away = guidance.cross_track * aside > 0
+    return guidance.target.order is None and not guidance.on_pass and away and abs(aside) > ACROSS
 
 
 def reason_of(state: BarState, link: LinkState, fix_age: float | None, words: Words) -> str:

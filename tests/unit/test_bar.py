@@ -147,6 +147,22 @@ def test_an_unknown_direction_asks_to_drive() -> None:
     assert view.reason == "direction unknown: drive 2 m"
 
 
+def test_across_the_lines_there_is_no_side_to_steer_to_but_where_one_is() -> None:
+    """Without a plan: nobody knows which line is looked for, until the tractor turns to one."""
+    plain = driving(3.0)
+    assert plain.guidance is not None
+    line = replace(plain.guidance.target, number=12, order=None)
+    guidance = replace(plain.guidance, target=line, on_pass=False, turn=None, heading_error=math.radians(85))
+    view = bar_of(replace(plain, guidance=guidance), AT, SETTINGS)
+    assert (view.state, view.reason, view.steering) == (BarState.ACROSS, "across line 12", None)
+    assert view.speed == "8.3"
+    towards = replace(guidance, heading_error=math.radians(-85))
+    planned = replace(guidance, target=replace(line, order=3))
+    along = replace(guidance, heading_error=math.radians(40))
+    for other in (towards, planned, along):
+        assert bar_of(replace(plain, guidance=other), AT, SETTINGS).state is BarState.GUIDE
+
+
 def test_without_a_line_speed_and_fix_still_stand() -> None:
     view = bar_of(replace(driving(), guidance=None), AT, SETTINGS)
     assert (view.state, view.reason, view.steering) == (BarState.NO_LINE, "no line", None)

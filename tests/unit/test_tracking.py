@@ -21,7 +21,7 @@ from support.passes import (
 from guidance_app.guidance.family import Circles, OffsetCurves, ParallelLines
 from guidance_app.guidance.patterns.last_pass import following_last
 from guidance_app.guidance.tracking import Tracker
-from guidance_app.model import Guidance, OffsetKind, Plan, Segment, SegmentKind
+from guidance_app.model import Guidance, OffsetKind, Plan, Pose, Segment, SegmentKind
 
 SPACING = 4.0
 CENTIMETRE = 0.01
@@ -249,11 +249,11 @@ def test_turning_with_the_implement_down_leads_to_the_next_pass() -> None:
     assert numbers(drive(tracker, list(poses_along(path)), working=True)) == [0, 1]
 
 
-def test_driving_over_the_lines_square_to_them_changes_nothing() -> None:
+def test_driving_over_the_lines_with_the_implement_down_changes_nothing() -> None:
     tracker = ab_tracker()
-    drive(tracker, list(poses_along(np.array([[0.0, 0.0], [0.0, 10.0]]))), working=False)
-    across = drive(tracker, list(poses_along(np.array([[0.0, 10.0], [40.0, 10.0]]), start=20.0)), working=False)
-    assert {one.target.number for one in across} == {0}
+    drive(tracker, list(poses_along(np.array([[0.0, 0.0], [0.0, 10.0]]))), working=True)
+    over = drive(tracker, list(poses_along(np.array([[0.0, 10.0], [40.0, 10.0]]), start=20.0)), working=True)
+    assert {one.target.number for one in over} == {0}
 
 
 def test_backing_up_keeps_sides_and_direction() -> None:
@@ -356,6 +356,43 @@ def test_lines_are_not_moved_out_of_bounds(metres: float) -> None:
     tracker = ab_tracker()
     assert not tracker.shift(metres)
     assert tracker.offsets == ()
+
+
+def across(*, back: bool = False) -> list[Pose]:
+    """Over thirty passes at a right angle, or back."""
+    way = np.array([[0.0, 50.0], [30 * SPACING, 50.0]])
+    return list(poses_along(way[::-1] if back else way, start=100.0 if back else 10.0))
+
+
+def test_who_drives_across_the_passes_with_the_implement_up_is_shown_where_the_tractor_is() -> None:
+    tracker = ab_tracker()
+    answers = drive(tracker, across(), working=False)
+    assert numbers(answers) == sorted(set(numbers(answers)))
+    assert max(abs(one.cross_track) for one in answers) < 1.5 * SPACING
+    assert answers[-1].target.number >= 28
+
+
+def test_across_passes_that_are_done_nothing_flickers() -> None:
+    tracker = ab_tracker()
+    for number in (3, 5, 6):
+        points = np.array([[number * SPACING, 0.0], [number * SPACING, 60.0]])
+        drive(tracker, list(poses_along(points, start=100.0 * number)), working=True)
+    answers = drive(tracker, across(back=True), working=False)[1:]
+    assert numbers(answers) == sorted(set(numbers(answers)), reverse=True)
+
+
+def test_across_the_passes_the_one_that_is_worked_or_taken_or_planned_stays() -> None:
+    worked = ab_tracker()
+    drive(worked, list(poses_along(np.array([[0.0, 0.0], [0.0, 50.0]]))), working=True)
+    aslant = np.array([[0.0, 50.0], [20 * SPACING, 50.0 + 20 * SPACING]])
+    assert numbers(drive(worked, list(poses_along(aslant, start=100.0)), working=True)) == [0]
+    taken = ab_tracker()
+    drive(taken, across()[:1], working=False)
+    assert taken.take(7)
+    assert numbers(drive(taken, across(), working=False)) == [7]
+    plan = round_trip(12)
+    planned = Tracker(plan, SPACING)
+    assert numbers(drive(planned, across(), working=False)) == [1]
 
 
 def test_a_nudge_moves_the_passes_of_a_plan_to_one_side_of_the_ground() -> None:
