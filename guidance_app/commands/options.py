@@ -92,6 +92,9 @@ def filter_settings(path: Path | None) -> FilterSettings | None:
         raise UseError(msg) from error
     except ValidationError as error:
         first = error.errors()[0]
+        if first["type"] == "json_invalid":
+            msg = f"the filter settings {path} are no whole JSON document: {first['ctx']['error']}"
+            raise UseError(msg) from error
         where = ".".join(str(part) for part in first["loc"]) or "the document"
         msg = f"the filter settings {path} are refused: {where} is {first['input']!r}, {first['msg'].lower()}"
         raise UseError(msg) from error

@@ -80,7 +80,7 @@ class House:
 
     def resume(self, found: Resumable, progress: Callable[[float], None] | None = None) -> None:
         """Goes on with a drive that was cut off, from its own receiver. Raises ``StoreError`` or ``SourceError``."""
-        source = open_receiver(job_of_recording(found.path))
+        source = open_receiver(job_of_recording(found.path), found.pass_number)
         self.take(resumed_session(found.path, source, progress))
 
     def take(self, session: Session) -> None:

@@ -74,8 +74,8 @@ class Engine:
     """Holds what one session remembers between events. Not thread-safe; its snapshots are.
 
     ``filter_name`` goes before the receiver document's choice; ``notices`` are shown beside those of field and plan;
-    ``estimator`` goes before both (poses that are known beforehand, as those of the smoother). Raises ``ValueError``
-    for a filter that is not known.
+    ``estimator`` goes before both (poses that are known beforehand, as those of the smoother). ``link`` is the
+    receiver's before anything is heard of it, else connecting. Raises ``ValueError`` for a filter that is not known.
     """
 
     def __init__(
@@ -86,6 +86,7 @@ class Engine:
         settings: FilterSettings | None = None,
         notices: tuple[str, ...] = (),
         estimator: Filter | None = None,
+        link: LinkState | None = None,
     ) -> None:
         self._job = job
         self._told = notices
@@ -109,7 +110,7 @@ class Engine:
         self._work = WorkDone(job)
         self._frame = self._work.frame
         self._raw_pose: Pose | None = None
-        first = Snapshot(0, 0.0, LinkState(), look_ahead_s=self._look_ahead, filter_name=self._filter_name)
+        first = Snapshot(0, 0.0, link or LinkState(), look_ahead_s=self._look_ahead, filter_name=self._filter_name)
         self._members: Changes = {one.name: getattr(first, one.name) for one in fields(first)}
         self._members |= self._work.shown_since(first, ()) | {"notices": self._notices(0.0)} | self._procedures
         self._snapshot = Snapshot(**self._members)

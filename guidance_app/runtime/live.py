@@ -33,7 +33,6 @@ IDLE = 0.5
 """Without bytes the engine still looks at the time this often (s)."""
 MICROSECOND_DIGITS = 6
 INTERRUPTED = sentence("the program was stopped here")
-UNUSED = LinkState(LinkStatus.UNUSED)
 TOLD_EVERY = 500
 """Events of a drive that is gone on with between two words about progress."""
 
@@ -61,9 +60,9 @@ class LiveSession:
         self.tap = Tap()
         self.recorder = recorder
         self._source = source
-        self._engine = Engine(job, filter_name=filter_name, settings=settings, notices=notices)
-        first = self._engine.snapshot
-        self._publisher = Publisher(first if source is not None else replace(first, link=UNUSED))
+        link = LinkState(LinkStatus.UNUSED) if source is None else None
+        self._engine = Engine(job, filter_name=filter_name, settings=settings, notices=notices, link=link)
+        self._publisher = Publisher(self._engine.snapshot)
         self._events: queue.SimpleQueue[Event | None] = queue.SimpleQueue()
         self._links: dict[str, None] = {RECEIVER: None}
         self._stop = threading.Event()
@@ -217,12 +216,10 @@ class LiveSession:
         return event if arrival == event.arrival else replace(event, arrival=arrival)
 
     def _publish(self, snapshot: Snapshot) -> None:
-        """With what the driver must know and is no part of the drive: of the recording, and that there is no source."""
+        """With what the driver must know of the recording and is no part of the drive."""
         self._notice = None if self.recorder is None else self.recorder.notice
         if self._notice is not None:
             snapshot = replace(snapshot, notices=(*snapshot.notices, self._notice))
-        if self._source is None:
-            snapshot = replace(snapshot, link=UNUSED)
         self._publisher.publish(snapshot)
 
 

@@ -64,15 +64,17 @@ SIMULATED_ON_FIELD = "guidance_app.sources.simulated:open_simulated_on"
 """The one source that wants to know what it is for."""
 
 
-def open_receiver(job: "Job") -> Source:
+def open_receiver(job: "Job", number: int | None = None) -> Source:
     """The source of a job's receiver, with its attitude sensor; a simulated tractor drives that job.
 
-    Raises ``SourceError``.
+    That tractor stands where the plan's pass of this ``number`` begins, as after a stop on it; without one where the
+    first does. Raises ``SourceError``.
     """
     receiver = job.receiver
     if receiver.source.partition(":")[0].lower() != SIMULATED:
         return open_source(receiver.source, receiver.attitude_source)
-    simulated = cast("Callable[[str, Job], Source]", _named(SIMULATED_ON_FIELD))(receiver.source, job)
+    opener = cast("Callable[[str, Job, int | None], Source]", _named(SIMULATED_ON_FIELD))
+    simulated = opener(receiver.source, job, number)
     return _beside(_in_time(simulated), receiver.source, receiver.attitude_source)
 
 

@@ -142,9 +142,10 @@ def open_simulated(uri: str) -> SimulatedSource:
     return SimulatedSource(SimulatedOptions(**chosen))  # type: ignore[arg-type] # each reader gives its member's type
 
 
-def open_simulated_on(uri: str, job: Job) -> SimulatedSource:
+def open_simulated_on(uri: str, job: Job, number: int | None = None) -> SimulatedSource:
     """The same on the job's own field, by its plan; one that is worked without a plan is driven to and fro.
 
+    The tractor begins with the pass or lap of this ``number``, as after a stop on it; without one with the first.
     Raises ``SourceError`` too where there is no way on the field.
     """
     source = open_simulated(uri)
@@ -160,12 +161,18 @@ def open_simulated_on(uri: str, job: Job) -> SimulatedSource:
     except PlanError as error:
         msg = sentence("the simulated tractor finds no way on this field: {reason}", reason=str(error))
         raise SourceError(msg) from error
-    segments = tuple(_drivable(plan.segments, request))
+    segments = tuple(_drivable(_from_pass(plan.segments, number), request))
     way = Way(
         frame, segments, (job.tractor, job.implement), endless=False, start=datetime.now(UTC).replace(microsecond=0)
     )
     said = sentence("simulated receiver on the field '{field}'", field=job.field.name)
     return replace(source, way=way, description=said)
+
+
+def _from_pass(segments: Sequence[Segment], number: int | None) -> Sequence[Segment]:
+    """From the pass or lap of this number on; all of them where there is none."""
+    works = (place for place, segment in enumerate(segments) if segment.implement_down and segment.number == number)
+    return segments[next(works, 0) :]
 
 
 def _drivable(segments: Sequence[Segment], request: PlanRequest) -> Iterator[Segment]:

@@ -35,9 +35,9 @@ class ListedRecording:
 
 @dataclass(frozen=True, slots=True)
 class Resumable:
-    """A drive that was cut off: "go on with pass 7 of 24, 14:32?". ``stopped_utc`` is when it was last heard of.
+    """A drive that was cut off: "go on: 6 of 24 passes done, 14:32". ``stopped_utc`` is when it was last heard of.
 
-    ``pass_number`` is the target, ``passes_done`` of ``passes_planned`` were driven; None without a plan.
+    ``pass_number`` is the target's, ``passes_done`` of ``passes_planned`` were driven; None without a plan.
     """
 
     path: Path

@@ -107,8 +107,8 @@ def test_a_drive_that_was_cut_off_may_be_left(server: viser.ViserServer, data: P
 
 def test_how_far_a_drive_was_in_words() -> None:
     found = Resumable(Path("x"), "Home", "Sow", 60.0, "2026-05-01T12:00:00+00:00", None, 7, 6, 24, 1.0)
-    assert cut_off_words(found, ENGLISH).startswith("Home, Sow, pass 7 of 24, ")
-    assert cut_off_words(replace(found, started_utc="nonsense", pass_number=None), ENGLISH) == "Home, Sow"
+    assert cut_off_words(found, ENGLISH).startswith("Home, Sow, 6 of 24 passes done, ")
+    assert cut_off_words(replace(found, started_utc="nonsense", passes_done=None), ENGLISH) == "Home, Sow"
 
 
 def test_drive_now_with_nothing_but_a_width(place: SetupPlace) -> None:

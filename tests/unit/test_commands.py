@@ -83,6 +83,10 @@ def test_tuned_settings_are_taken_and_bad_ones_named(log: Path, tmp_path: Path, 
     assert "quantisation_kf.process_noise.1" in said
     assert "-1" in said
     assert not out.exists()
+    bad.write_bytes(b'\xff{"quantisation_kf": ')
+    assert main(["process", str(log), "--settings", str(bad), "--out", str(out)]) == 2
+    said = capsys.readouterr().err
+    assert said.endswith("bad.json are no whole JSON document: expected value at line 1 column 1\n")
 
 
 def test_smoother_and_filter_together_are_refused(log: Path, tmp_path: Path, capsys) -> None:

@@ -103,6 +103,19 @@ def test_a_drive_that_goes_on_does_not_go_back_in_time() -> None:
     assert first.t % 86_400 == pytest.approx(day, abs=1.0)
 
 
+def test_a_drive_that_goes_on_begins_with_the_pass_under_way() -> None:
+    whole = open_simulated_on("sim:", sample_job()).way
+    assert whole is not None
+    works = [one for one in whole.segments if one.implement_down]
+    late = open_simulated_on("sim:", sample_job(), works[3].number).way
+    assert late is not None
+    assert late.segments[0].number == works[3].number
+    assert late.segments[0].points.tolist() == works[3].points.tolist()
+    unknown = open_simulated_on("sim:", sample_job(), 999).way
+    assert unknown is not None
+    assert len(unknown.segments) == len(whole.segments)
+
+
 def test_a_job_without_a_field_is_driven_on_the_sample() -> None:
     job = sample_job().model_copy(update={"field": None, "operation": None})
     assert open_simulated_on("sim:", job) == open_simulated("sim:")

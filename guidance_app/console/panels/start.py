@@ -40,10 +40,10 @@ class _DriveNow(BaseModel):
 
 
 def cut_off_words(found: Resumable, words: Words) -> str:
-    """``pass 7 of 24, 14:32``: how far a drive was, and when it was last heard of."""
+    """``6 of 24 passes done, 14:32``: how far a drive was, and when it was last heard of."""
     parts = [one for one in (found.field, found.operation) if one]
-    if found.pass_number is not None and found.passes_planned is not None:
-        parts.append(words("pass {number} of {count}", number=found.pass_number, count=found.passes_planned))
+    if found.passes_done is not None and found.passes_planned is not None:
+        parts.append(words("{done} of {count} passes done", done=found.passes_done, count=found.passes_planned))
     stopped = found.stopped_utc or found.started_utc
     try:
         moment = datetime.datetime.fromisoformat(stopped).astimezone()
