@@ -86,7 +86,7 @@ class Joiner:
 
     def _lap_tasks(self, lap: Lap, last: FloatArray, number: int) -> list[Task]:
         """The sides of a lap, begun where it is reached soonest."""
-        poses, along = lap.poses(LAP_STEP, LAP_SIDE * self._turner.radius)
+        poses, along = lap.poses(LAP_STEP, LAP_SIDE * self._turner.radius, self._turner.out)
         if not len(along):
             return side_tasks(lap, 0.0, number, None)
         order = np.argsort(np.hypot(*(poses[:, :2] - last[:2]).T))[:LAP_PLACES]

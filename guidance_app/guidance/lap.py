@@ -17,6 +17,9 @@ __all__ = ["Corner", "Lap", "Side"]
 SHORTEST = 0.1
 """Metres; a shorter rest of a corner is not drawn."""
 
+BENT = 0.1
+"""Radians; a line that turns by less is straight enough to begin and end a lap on."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Corner:
@@ -58,22 +61,31 @@ class Lap:
         """Shape (N, 2), the first point not repeated."""
         return self.line.points
 
-    def poses(self, step: float, ahead: float) -> tuple[FloatArray, FloatArray]:
+    def poses(self, step: float, ahead: float, out: float) -> tuple[FloatArray, FloatArray]:
         """Poses (M, 3) at which the lap may be begun, and how far along each is.
 
-        Not where the implement is up, nor so short of it that there are no ``ahead`` metres to work before; where no
-        side is that long, anywhere on a side.
+        Not where the implement is up, nor so short of it that there are no ``ahead`` metres to work before; nor in a
+        bend: where a lap is begun it also ends, and the tractor runs ``out`` metres straight on. Where that leaves
+        nothing, anywhere on a side.
         """
         everywhere = self.line.places(step)
-        for metres in (ahead, 0.0):
+        for metres, straight in ((ahead, True), (ahead, False), (0.0, False)):
             along = everywhere
             for corner in self.corners:
                 before_lift = np.mod(corner.lift - along, self.line.length)
                 raised = np.mod(corner.end - along, self.line.length) <= corner.end - corner.lift
                 along = along[(before_lift >= metres) & ~raised]
+            if straight:
+                along = along[self._bend(along, out) < BENT]
             if len(along):
                 break
         return self.line.poses(along), along
+
+    def _bend(self, along: FloatArray, out: float) -> FloatArray:
+        """Radians by which the line turns over ``out`` metres from each place (M,)."""
+        turned = self.line.poses(along + out)[:, 2] - self.line.poses(along)[:, 2]
+        bend: FloatArray = np.abs(np.mod(turned + np.pi, 2 * np.pi) - np.pi)
+        return bend
 
     def sides_from(self, begin: float) -> Iterator[Side]:
         """The sides in driving order when the lap is begun at ``begin`` metres along its line."""

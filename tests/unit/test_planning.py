@@ -147,3 +147,21 @@ def test_every_sharp_corner_of_a_lap_is_worked_by_backing_up(real_data: Path) ->
     request = PlanRequest(width=12.0, radius=6.0)
     (lap,) = headland_of(ground_of(polygon_in(frame_of(boundary), boundary), request), request).laps
     assert len(lap.corners) == 5
+
+
+@pytest.mark.parametrize("inside_out", [False, True])
+@pytest.mark.parametrize("start", [None, (0.0, 0.0), (68.0, 67.0), (34.0, 0.0)])
+def test_laps_follow_each_other_without_backing_up_wherever_they_begin(
+    start: tuple[float, float] | None, inside_out: bool
+) -> None:
+    request = PlanRequest(
+        width=6.0,
+        offset_back=1.8,
+        length=1.6,
+        method=Method.SURROUNDING,
+        options={"inside_out": inside_out},
+        reverse_allowed=False,
+        start=start,
+    )
+    plan = plan_operation(shapely.box(0.0, 0.0, 68.0, 67.0), request)
+    assert all(each.fits for each in plan.segments)
