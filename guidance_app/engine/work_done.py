@@ -70,7 +70,7 @@ class WorkDone:
         self._tracker: Tracker | None = None
         self._switch = WorkSwitch(job.implement.working_width)
         self._track = TrackTrail()
-        self._pass_work = PassWork(self._behind)
+        self._pass_work = PassWork(self._behind, job.implement.sections)
         self._guidance: Guidance | None = None
         self._turning: Turning | None = None
         self._guided: tuple[Pose, tuple[float, float]] | None = None
@@ -128,7 +128,7 @@ class WorkDone:
             self._switch = self._switch.after(pose, self._guidance, reported, line_driven=line_driven)
         number = None if self._guidance is None else self._guidance.target.number
         self._coverage.step(implement, pose.t, self._working, number, self._mask)
-        self._pass_work.step(self._guidance, working=self._working)
+        self._pass_work.step(self._guidance, self._mask if self._working else 0)
         self._track.step(pose.t, pose.east, pose.north, pose.heading)
 
     @property

@@ -1,6 +1,7 @@
 """What of a pass has been driven by, and what of that was left out: metres along it, by its implement.
 
-A stretch that is worked when the tractor comes again is no longer left out, whichever way it is driven.
+A stretch that is worked when the tractor comes again is no longer left out, whichever way it is driven. Each section
+of the implement counts for itself, by the strip of the pass that it runs on.
 """
 
 import copy
@@ -17,10 +18,11 @@ EVERY = 0.5
 
 
 class PassWork:
-    """Remembers two unions of stretches a pass: driven along, and worked. ``behind`` is as the tracker's."""
+    """Remembers unions of stretches a pass: driven along, and worked by strip. ``behind`` is as the tracker's."""
 
-    def __init__(self, behind: float = 0.0) -> None:
+    def __init__(self, behind: float = 0.0, sections: int = 1) -> None:
         self._behind = behind
+        self._sections = sections
         self._driven = Progress()
         self._worked = Progress()
         self._keys: dict[tuple[int, float], int] = {}
@@ -28,7 +30,7 @@ class PassWork:
         self._key = 0
         self._length = 0.0
         self._last: float | None = None
-        self._was_working = False
+        self._were_on = 0
 
     def fork(self) -> "PassWork":
         """An independent copy."""
@@ -36,8 +38,11 @@ class PassWork:
         vars(other).update(_driven=self._driven.fork(), _worked=self._worked.fork(), _keys=dict(self._keys))
         return other
 
-    def step(self, guidance: Guidance | None, *, working: bool) -> None:
-        """One epoch further. A jump, a turn and a way beside the pass leave nothing out."""
+    def step(self, guidance: Guidance | None, sections_on: int) -> None:
+        """One epoch further. A jump, a turn and a way beside the pass leave nothing out.
+
+        Bit 0 of ``sections_on`` is the leftmost section; 0 when the implement is lifted.
+        """
         if guidance is None or not guidance.on_pass:
             self._last = None
             return
@@ -45,18 +50,27 @@ class PassWork:
             self._begin(guidance.target)
         place = self._place(guidance)
         if self._last is not None:
-            if abs(place - self._last) < EVERY and working == self._was_working:
+            if abs(place - self._last) < EVERY and sections_on == self._were_on:
                 return
+            strips = self._strips(against=guidance.against)
             for start, end in driven_stretches(self._last, place, self._length, closed=guidance.target.closed):
                 self._driven.add(self._key, start, end)
-                if self._was_working:
-                    self._worked.add(self._key, start, end)
-        self._last, self._was_working = place, working
+                for strip in strips:
+                    self._worked.add(strip, start, end)
+        self._last, self._were_on = place, sections_on
+
+    def _strips(self, *, against: bool) -> list[int]:
+        """Keys of the strips that were worked until now; on the way back the leftmost section runs on the last one."""
+        first, last = self._key * self._sections, self._sections - 1
+        on = (place for place in range(self._sections) if self._were_on >> place & 1)
+        return [first + (last - place if against else place) for place in on]
 
     @property
     def missed(self) -> float:
-        """Metres of the present pass that were driven along and not worked."""
-        return max(self._driven.worked(self._key) - self._worked.worked(self._key), 0.0)
+        """Metres of the present pass that were driven along and not worked; a strip's count for its share."""
+        driven, first = self._driven.worked(self._key), self._key * self._sections
+        lacking = (driven - self._worked.worked(first + strip) for strip in range(self._sections))
+        return sum(max(metres, 0.0) for metres in lacking) / self._sections
 
     def _begin(self, target: Pass) -> None:
         """A pass that was cut short when the rest was planned again counts as another one."""
