@@ -15,6 +15,7 @@ from guidance_app.guidance.headland import Headland, headland_of, laps_only
 from guidance_app.guidance.leftover import leftovers
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.guidance.room import Room
+from guidance_app.guidance.strokes import strokes
 from guidance_app.guidance.swaths import swath, united
 from guidance_app.guidance.task import Task, pass_line, side_tasks
 from guidance_app.model import FloatArray
@@ -65,6 +66,13 @@ def layout_of(ground: Polygon, room: Room, request: PlanRequest) -> Layout:
         swaths = _swaths(more, request.width)
         area += sum(each.area for each in swaths)
         worked = united([worked, *swaths])
+    if request.leftovers:
+        more = strokes(ground, worked, room, request)
+        if more:
+            bundles.extend(more)
+            swaths = _swaths(more, request.width)
+            area += sum(each.area for each in swaths)
+            worked = united([worked, *swaths])
     return Layout(request.width, ground, headland, heading, spacing, tuple(bundles), worked, area)
 
 
