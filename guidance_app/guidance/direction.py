@@ -31,6 +31,9 @@ EXACT, EXACT_PASSES = 20, 400
 SLACK = 1
 """Passes more than the fewest that a heading may take if it is cheaper otherwise."""
 
+AGAIN = 3.0
+"""Metres that a metre worked again counts for: it costs seed, fertiliser and spray besides the time."""
+
 STRAIGHT = 0.5
 """Metres by which a stretch of the boundary may bend and still be an edge."""
 
@@ -89,7 +92,7 @@ def best_heading(mainland: Sequence[Polygon], request: PlanRequest) -> float:
     stretches, slants = _counted(edges, headings, request.spacing)
     counts = stretches + len(mainland) - sum(len(part.interiors) for part in mainland)
     turn = (math.pi * request.path_radius + request.spacing) / request.turn_speed
-    guess = counts * turn + slants / request.work_speed
+    guess = counts * turn + AGAIN * slants / request.work_speed
     exact = int(np.clip(EXACT_PASSES / counts.min(), 2, EXACT))
     few = np.flatnonzero(counts <= counts.min() + SLACK)
     likely = few[np.argsort(guess[few])][:exact]
@@ -103,7 +106,7 @@ def best_heading(mainland: Sequence[Polygon], request: PlanRequest) -> float:
     fewest = min(count for count, _ in cuts.values())
     return min(
         (heading for heading, (count, _) in cuts.items() if count <= fewest + SLACK),
-        key=lambda heading: cuts[heading][0] * turn + cuts[heading][1] / request.work_speed,
+        key=lambda heading: cuts[heading][0] * turn + AGAIN * cuts[heading][1] / request.work_speed,
     )
 
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
@@ -21,9 +22,6 @@ from guidance_app.guidance.task import Task, pass_line, side_tasks
 from guidance_app.model import FloatArray
 
 __all__ = ["Layout", "layout_of"]
-
-ROUNDS = 3
-"""Times that leftovers are looked for: a bent one is worked by one straight pass after another."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,7 +47,10 @@ class Layout:
 
 
 def layout_of(ground: Polygon, room: Room, request: PlanRequest) -> Layout:
-    """Headland, passes over the mainland, and passes for what both leave."""
+    """Headland, passes over the mainland, and passes for what both leave.
+
+    Leftovers are looked for twice: a bent one is worked by one straight pass after another.
+    """
     headland = laps_only(ground, request) if request.method is Method.SURROUNDING else headland_of(ground, request)
     heading = pass_heading(ground, headland.mainland, request)
     mainland = headland.mainland if headland.laps else ()
@@ -57,17 +58,9 @@ def layout_of(ground: Polygon, room: Room, request: PlanRequest) -> Layout:
     swaths = _lap_swaths(headland, request.width) + _swaths(bundles, request.width)
     worked = united(swaths)
     area = sum(each.area for each in swaths)
-    for attempt in range(ROUNDS if request.leftovers else 0):
-        preferred = heading if attempt == 0 and not headland.laps else None
-        more = leftovers(ground, worked, room, request, preferred)
-        if not more:
-            break
-        bundles.extend(more)
-        swaths = _swaths(more, request.width)
-        area += sum(each.area for each in swaths)
-        worked = united([worked, *swaths])
-    if request.leftovers:
-        more = strokes(ground, worked, room, request)
+    along = None if headland.laps else heading
+    for search in (partial(leftovers, heading=along), leftovers, strokes) if request.leftovers else ():
+        more = search(ground, worked, room, request)
         if more:
             bundles.extend(more)
             swaths = _swaths(more, request.width)

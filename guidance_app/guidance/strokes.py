@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from shapely import Polygon
+from numpy.typing import NDArray
+from shapely import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from guidance_app.guidance.bundle import Bundle
@@ -21,6 +22,11 @@ from guidance_app.guidance.room import BoolArray, Room
 from guidance_app.model import FloatArray
 
 __all__ = ["strokes"]
+
+Swaths = NDArray[np.object_]
+
+GRID = 1e-3
+"""Metres to which corners of what is left are snapped, so that no difference of differences fails."""
 
 SLIVER = 0.06
 """Working widths; what is narrower than twice this is not worth a stroke."""
@@ -58,29 +64,42 @@ def strokes(ground: Polygon, worked: BaseGeometry, room: Room, request: PlanRequ
     sliver = SLIVER * request.width
     rest = ground.difference(worked).buffer(-sliver, join_style="mitre").buffer(sliver, join_style="mitre")
     found: list[Bundle] = []
-    for part in parts_of(rest, _worth(request)):
-        found.extend(_strokes_over(part, room, request))
+    swaths: list[BaseGeometry] = []
+    for part in parts_of(shapely.set_precision(rest, GRID), _worth(request)):
+        piece: BaseGeometry = part
+        for swath in swaths:
+            piece = _less(piece, swath)
+        for bundle, swath in _strokes_over(piece, room, request):
+            found.append(bundle)
+            swaths.append(swath)
     return found
 
 
+def _less(piece: BaseGeometry, swath: BaseGeometry) -> BaseGeometry:
+    """What is left of a piece."""
+    return MultiPolygon(parts_of(shapely.difference(piece, swath, grid_size=GRID)))
+
+
 def _worth(request: PlanRequest) -> float:
+    """Square metres that a stroke has to gain."""
     return max(SMALLEST, WORTH * request.width**2)
 
 
-def _strokes_over(piece: BaseGeometry, room: Room, request: PlanRequest) -> Iterator[Bundle]:
+def _strokes_over(piece: BaseGeometry, room: Room, request: PlanRequest) -> Iterator[tuple[Bundle, BaseGeometry]]:
+    """One after another with its swath, the one that gains most first, until none is worth it."""
     while piece.area > _worth(request):
         tried = _tried(piece, room, request)
         if tried is None:
             return
-        gains = shapely.area(shapely.intersection(tried.swaths, piece))
+        gains = shapely.area(shapely.intersection(tried.swaths, piece, grid_size=GRID))
         best = int(np.argmax(gains - LENGTH_COSTS * shapely.area(tried.swaths)))
         if gains[best] < _worth(request):
             return
         line = tried.lines[best]
         back = tried.back[best]
         other = tried.lines[back] if back >= 0 and gains[back] >= EITHER_WAY * gains[best] else line
-        yield Bundle(((line, other),), spare=True)
-        piece = piece.difference(tried.swaths[best])
+        yield Bundle(((line, other),), spare=True), tried.swaths[best]
+        piece = _less(piece, tried.swaths[best])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,8 +107,8 @@ class _Tried:
     """Strokes that the machine can drive: lines (S, 2, 2), swaths (S,), and which is the same driven back, or -1."""
 
     lines: FloatArray
-    swaths: "np.ndarray[tuple[int], np.dtype[np.object_]]"
-    back: "np.ndarray[tuple[int], np.dtype[np.intp]]"
+    swaths: Swaths
+    back: NDArray[np.intp]
 
 
 def _tried(piece: BaseGeometry, room: Room, request: PlanRequest) -> _Tried | None:
@@ -119,6 +138,7 @@ class _Strip:
 
     @property
     def poses(self) -> FloatArray:
+        """Shape (P, 3), one at each place."""
         points = self.origin + self.places[:, None] * self.along
         return np.column_stack([points, np.full(len(points), math.atan2(self.along[1], self.along[0]))])
 
@@ -145,7 +165,7 @@ def _strips(piece: BaseGeometry, request: PlanRequest) -> Iterator[_Strip]:
     moved = np.array(INTO) * request.width
     for along in _directions(piece, SLIVER * request.width):
         across = np.array([-along[1], along[0]])
-        (left, low), (right, high) = _bounds(corners @ np.column_stack([along, across]))
+        (left, low), (right, high) = _ends(corners @ np.column_stack([along, across]))
         for aside in np.concatenate([low + half + moved, high - half - moved, [(low + high) / 2]]):
             origin = aside * across
             places = np.arange(left - ahead, right + ahead + STEP, STEP)
@@ -153,7 +173,8 @@ def _strips(piece: BaseGeometry, request: PlanRequest) -> Iterator[_Strip]:
             yield _Strip(origin, -along, -right, -left, -places[::-1])
 
 
-def _bounds(points: FloatArray) -> FloatArray:
+def _ends(points: FloatArray) -> FloatArray:
+    """The least and the greatest of each coordinate."""
     return np.stack([points.min(axis=0), points.max(axis=0)])
 
 
@@ -169,14 +190,15 @@ def _directions(piece: BaseGeometry, smooth: float) -> Iterator[FloatArray]:
 
 
 def _edges(piece: BaseGeometry, smooth: float) -> Iterator[tuple[float, float]]:
+    """Yaw and length of each edge."""
     for part in parts_of(piece):
         steps = np.diff(shapely.get_coordinates(shapely.simplify(part.exterior, smooth)), axis=0)
         yield from zip(np.arctan2(steps[:, 1], steps[:, 0]).tolist(), np.hypot(*steps.T).tolist(), strict=True)
 
 
-def _swaths(lines: FloatArray, width: float) -> "np.ndarray[tuple[int], np.dtype[np.object_]]":
+def _swaths(lines: FloatArray, width: float) -> Swaths:
+    """What the lines (S, 2, 2) work, with square ends."""
     along = lines[:, 1] - lines[:, 0]
     side = np.stack([-along[:, 1], along[:, 0]], axis=1) * (width / 2 / np.hypot(*along.T))[:, None]
     rims = np.stack([lines[:, 0] - side, lines[:, 1] - side, lines[:, 1] + side, lines[:, 0] + side], axis=1)
-    swaths: np.ndarray[tuple[int], np.dtype[np.object_]] = shapely.polygons(rims)
-    return swaths
+    return np.array(shapely.polygons(rims))

@@ -6,6 +6,7 @@ there, a taut string does: through the gap that a lap is too wide for. Where not
 shortest path inside and flagged.
 """
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -49,6 +50,16 @@ ROUNDS = 8
 """Batches after which a transfer counts as one that does not fit."""
 
 
+SAME = 1e-3
+"""Metres; nearer places are one."""
+
+OUT = (1.5, 3.0, 5.0, 8.0)
+"""Turning radii by which a tractor backs out of a dead end, or into one."""
+
+OUT_STEP = 0.5
+"""Metres between the places at which the way out of a dead end is tried."""
+
+
 class Ways:
     """Finds the way between any two poses of one field."""
 
@@ -70,10 +81,31 @@ class Ways:
         return (
             self._along(self._tracks, start, end, cost)
             or direct
+            or self._backing_out(start, end)
             or self._pulled(start, end)
             or self._turner.awkward(*pair)[0]
             or self._flagged(start, end)
         )
+
+    def _backing_out(self, start: FloatArray, end: FloatArray) -> Turn | None:
+        """A way along the laps after backing out of a dead end, or before backing into one."""
+        if not self._turner.reverse:
+            return None
+        out, into = self._dead_end(start, -1.0), self._dead_end(end, 1.0)
+        for before, after in [*((0.0, metres) for metres in into), *((metres, 0.0) for metres in out)]:
+            from_there, to_there = _moved(start, -before), _moved(end, after)
+            turn = self._along(self._tracks, from_there, to_there, np.inf)
+            if turn is not None:
+                return _between(start, turn, end, self._turner.out)
+        return None
+
+    def _dead_end(self, pose: FloatArray, sense: float) -> list[float]:
+        """Metres along the line through a pose, ahead or behind, to where the machine may come without turning."""
+        metres = np.arange(0.0, OUT[-1] * self._turner.radius, OUT_STEP)
+        line = np.array([_moved(pose, sense * each) for each in metres])
+        fits = self._turner.room.fits_each(line)
+        free = metres[-1] if fits.all() else metres[max(0, int(np.argmin(fits)) - 1)]
+        return [part * self._turner.radius for part in OUT if part * self._turner.radius <= free]
 
     def _cost(self, turn: Turn) -> float:
         if self._mainland is None:
@@ -234,6 +266,23 @@ class _Tracks:
             return self.poses[join : join + 1, :2]
         points: FloatArray = ring.stretch(float(self._along[join]), float(self._along[leave]))
         return points
+
+
+def _moved(pose: FloatArray, metres: float) -> FloatArray:
+    """The pose so many metres ahead."""
+    return pose + metres * np.array([np.cos(pose[2]), np.sin(pose[2]), 0.0])
+
+
+def _between(start: FloatArray, turn: Turn, end: FloatArray, out: float) -> Turn:
+    """The turn with straight legs before and after it where it does not begin at ``start`` or end at ``end``."""
+    legs = list(turn.legs)
+    if math.dist(start[:2], legs[0].points[0]) > out + SAME:
+        run_out = _moved(start, out)[:2]
+        before = [leg_of(np.stack([start[:2], run_out]), reverse=False)] if out else []
+        legs[:0] = [*before, leg_of(np.stack([run_out, legs[0].points[0]]), reverse=True)]
+    if math.dist(end[:2], legs[-1].points[-1]) > SAME:
+        legs.append(leg_of(np.stack([legs[-1].points[-1], end[:2]]), reverse=True))
+    return Turn(tuple(legs), sum(leg.length for leg in legs), transfer=True)
 
 
 def _chained(onto: Turn, ridden: FloatArray, off: Turn) -> Turn:
