@@ -37,6 +37,9 @@ WORTH = 0.15
 SMALLEST = 15.0
 """Square metres that a stroke works at least."""
 
+PART = 0.002
+"""Part of the field that a stroke works at least, unless it works a whole square working width."""
+
 EDGES = 6
 """Directions in which strokes over one piece are tried, those of its longest edges."""
 
@@ -63,16 +66,23 @@ def strokes(ground: Polygon, worked: BaseGeometry, room: Room, request: PlanRequ
     """Strokes for all that is left and worth one, each a bundle of its own."""
     sliver = SLIVER * request.width
     rest = ground.difference(worked).buffer(-sliver, join_style="mitre").buffer(sliver, join_style="mitre")
+    worth = _worth(ground, request)
     found: list[Bundle] = []
     swaths: list[BaseGeometry] = []
-    for part in parts_of(shapely.set_precision(rest, GRID), _worth(request)):
+    for part in parts_of(shapely.set_precision(rest, GRID), worth):
         piece: BaseGeometry = part
         for swath in swaths:
             piece = _less(piece, swath)
-        for bundle, swath in _strokes_over(piece, room, request):
+        for bundle, swath in _strokes_over(piece, worth, room, request):
             found.append(bundle)
             swaths.append(swath)
     return found
+
+
+def _worth(ground: Polygon, request: PlanRequest) -> float:
+    """Square metres that make a stroke worth the way there."""
+    square = request.width**2
+    return max(SMALLEST, WORTH * square, min(PART * ground.area, square))
 
 
 def _less(piece: BaseGeometry, swath: BaseGeometry) -> BaseGeometry:
@@ -80,20 +90,17 @@ def _less(piece: BaseGeometry, swath: BaseGeometry) -> BaseGeometry:
     return MultiPolygon(parts_of(shapely.difference(piece, swath, grid_size=GRID)))
 
 
-def _worth(request: PlanRequest) -> float:
-    """Square metres that a stroke has to gain."""
-    return max(SMALLEST, WORTH * request.width**2)
-
-
-def _strokes_over(piece: BaseGeometry, room: Room, request: PlanRequest) -> Iterator[tuple[Bundle, BaseGeometry]]:
+def _strokes_over(
+    piece: BaseGeometry, worth: float, room: Room, request: PlanRequest
+) -> Iterator[tuple[Bundle, BaseGeometry]]:
     """One after another with its swath, the one that gains most first, until none is worth it."""
-    while piece.area > _worth(request):
+    while piece.area > worth:
         tried = _tried(piece, room, request)
         if tried is None:
             return
         gains = shapely.area(shapely.intersection(tried.swaths, piece, grid_size=GRID))
         best = int(np.argmax(gains - LENGTH_COSTS * shapely.area(tried.swaths)))
-        if gains[best] < _worth(request):
+        if gains[best] < worth:
             return
         line = tried.lines[best]
         back = tried.back[best]

@@ -15,7 +15,7 @@ from guidance_app.guidance.ground import ground_of
 from guidance_app.guidance.leftover import leftovers
 from guidance_app.guidance.planning import PlanError, PlanRequest, plan_operation
 from guidance_app.guidance.room import Room
-from guidance_app.guidance.strokes import GRID, SMALLEST, WORTH, strokes
+from guidance_app.guidance.strokes import GRID, PART, SMALLEST, WORTH, strokes
 from guidance_app.store import field_from_file
 
 FIELD = shapely.box(0.0, 0.0, 60.0, 60.0)
@@ -72,7 +72,7 @@ def test_every_stroke_is_drivable_and_works_enough(polygon: shapely.Polygon, wid
         return
     worked = ground.buffer(-width)
     room = Room(ground, request.body)
-    least = max(SMALLEST, WORTH * width**2)
+    least = max(SMALLEST, WORTH * width**2, min(PART * ground.area, width**2))
     for bundle in strokes(ground, worked, room, request):
         ((line, back),) = bundle.lines
         assert room.fits_each(driven(line)).all()
