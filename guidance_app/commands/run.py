@@ -14,9 +14,10 @@ from guidance_app.commands.options import (
     job_from_options,
 )
 from guidance_app.commands.serving import serve
-from guidance_app.runtime import LiveSession, recorded_session, resumed_session
+from guidance_app.runtime import LiveSession, caster_for, recorded_session, resumed_session
 from guidance_app.sources import SOURCES, Source, open_source
-from guidance_app.sources.ntrip import caster_from_uri
+from guidance_app.sources.ntrip import Caster, caster_from_uri
+from guidance_app.store import StoreError
 from guidance_app.store.recordings_list import Resumable, resumable
 
 __all__ = ["add_parser", "run"]
@@ -45,7 +46,8 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "--ntrip",
         metavar="URI",
         help="corrections for the receiver, from ntrip://user:password@host:2101/MOUNT; the password may stand in"
-        f" {PASSWORD} instead, where no other user of this machine sees it",
+        f" {PASSWORD} instead, where no other user of this machine sees it (without it the caster that was entered at"
+        " the screen)",
     )
     add_job_options(parser)
     add_data_option(parser)
@@ -64,8 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
             msg = "--resume goes on with a drive: name its receiver by --source"
             raise UseError(msg)
         return serve(None, arguments, data, "nothing is driven yet: choose at the screen")
-    caster = None if arguments.ntrip is None else caster_from_uri(arguments.ntrip, os.environ.get(PASSWORD))
-    source = open_source(arguments.source, arguments.attitude, caster)
+    source = open_source(arguments.source, arguments.attitude, _caster(arguments, data))
     found = resumable(data)
     if arguments.resume:
         session = _resumed(found, source, data)
@@ -76,6 +77,17 @@ def run(arguments: argparse.Namespace) -> int:
         settings = filter_settings(arguments.settings)
         session = recorded_session(data, job, source, arguments.filter, settings)
     return serve(session, arguments, data, f"reading {source.description}")
+
+
+def _caster(arguments: argparse.Namespace, data: Path) -> Caster | None:
+    """The one that is named, else that of the screen. An account that cannot be read stops no drive."""
+    if arguments.ntrip is not None:
+        return caster_from_uri(arguments.ntrip, os.environ.get(PASSWORD))
+    try:
+        return caster_for(data, arguments.source)
+    except StoreError as error:
+        print(f"driving without corrections: {error}")
+        return None
 
 
 def _resumed(found: Resumable | None, source: Source, data: Path) -> LiveSession:

@@ -264,6 +264,6 @@ class _Input:
             return '<div class="g-hint" data-keys="cards"></div>'
         whole = self._entry.kind is EntryKind.WHOLE
         plain = self._entry.kind in (EntryKind.NUMBER, EntryKind.WHOLE) and (self._entry.low or 0.0) >= 0.0
-        keys = ("numeric" if whole else "decimal") if plain else "text"
+        keys = ("numeric" if whole else "decimal") if plain else "secret" if self._entry.secret else "text"
         said = f"<b>{html.escape(wrong)}</b>" if wrong else ""
         return f'<div class="g-hint" data-keys="{keys}">{said}{html.escape(self._hint)}</div>'

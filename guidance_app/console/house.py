@@ -17,8 +17,16 @@ from guidance_app.exchange import ExchangeError
 from guidance_app.guidance.planning import PlanError
 from guidance_app.language import sentence
 from guidance_app.model import EndDrive, SessionState, Snapshot
-from guidance_app.runtime import LiveSession, Session, SessionManager, recorded_session, resumed_session
-from guidance_app.sources import SourceError, open_receiver
+from guidance_app.runtime import (
+    LiveSession,
+    Session,
+    SessionManager,
+    caster_for,
+    recorded_session,
+    resumed_session,
+)
+from guidance_app.sources import Source, SourceError, open_receiver
+from guidance_app.sources.ntrip import Caster, Traffic
 from guidance_app.sources.ports import ListPorts, found_ports
 from guidance_app.store import Store, StoreError
 from guidance_app.store.recordings import job_of_recording
@@ -45,6 +53,8 @@ class House:
         self.store = store
         self.list_ports = list_ports
         self.files = Files()
+        self.corrections = Traffic()
+        """What has come from the caster in this drive."""
         self._workers = ThreadPoolExecutor(WORKERS, thread_name_prefix="house")
         self._changing = threading.Lock()
         self._version = 0
@@ -66,8 +76,11 @@ class House:
 
     def drive(self, job: Job) -> None:
         """Ends what is driven and drives ``job`` from its receiver's source, recorded. Raises ``SourceError``."""
-        source = open_receiver(job)
-        self.take(LiveSession(job, source) if self.store is None else recorded_session(self.store.root, job, source))
+        source, notices = self._opened(job)
+        if self.store is None:
+            self.take(LiveSession(job, source, notices=notices))
+        else:
+            self.take(recorded_session(self.store.root, job, source, notices=notices))
 
     def use_source(self, uri: str) -> None:
         """Ends what is driven and drives the same job from another receiver. Raises ``SourceError``."""
@@ -80,8 +93,21 @@ class House:
 
     def resume(self, found: Resumable, progress: Callable[[float], None] | None = None) -> None:
         """Goes on with a drive that was cut off, from its own receiver. Raises ``StoreError`` or ``SourceError``."""
-        source = open_receiver(job_of_recording(found.path), found.pass_number)
+        source, _ = self._opened(job_of_recording(found.path), found.pass_number)
         self.take(resumed_session(found.path, source, progress))
+
+    def _opened(self, job: Job, number: int | None = None) -> tuple[Source, tuple[str, ...]]:
+        """The job's source with the corrections it gets, and what to know of them; ``number`` as ``open_receiver``."""
+        caster: Caster | None = None
+        notices: tuple[str, ...] = ()
+        if self.store is not None:
+            try:
+                caster = caster_for(self.store.root, job.receiver.source)
+            except StoreError as error:
+                log.warning("%s", error)
+                notices = (sentence("No corrections: {reason}", reason=error.args[0]),)
+        self.corrections = Traffic()
+        return open_receiver(job, number, caster, self.corrections), notices
 
     def take(self, session: Session) -> None:
         """Ends what is driven and goes on with this session."""

@@ -1,6 +1,7 @@
 """Threads, queue and clock around one engine: the live session, recorded, and the replay under a person's hands."""
 
 from guidance_app.runtime.cache import cache_folder
+from guidance_app.runtime.corrections import caster_for, caster_of
 from guidance_app.runtime.engines import Comparison
 from guidance_app.runtime.live import LiveSession
 from guidance_app.runtime.manager import SessionManager
@@ -24,6 +25,8 @@ __all__ = [
     "Tap",
     "Warming",
     "cache_folder",
+    "caster_for",
+    "caster_of",
     "new_recording",
     "recorded_session",
     "resumed_session",

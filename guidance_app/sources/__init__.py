@@ -16,9 +16,20 @@ from guidance_app.model import ATTITUDE, RECEIVER, Chunk, SourceDown, SourceUp
 
 if TYPE_CHECKING:
     from guidance_app.documents import Job
-    from guidance_app.sources.ntrip import Caster
+    from guidance_app.sources.ntrip import Caster, Traffic
 
-__all__ = ["SOURCES", "Opener", "Source", "SourceError", "SourceEvent", "open_receiver", "open_source"]
+    Corrected = Callable[["Source", Caster, Traffic | None], Mapping[str, "Source"]]
+
+__all__ = [
+    "SOURCES",
+    "Opener",
+    "Source",
+    "SourceError",
+    "SourceEvent",
+    "open_receiver",
+    "open_source",
+    "takes_corrections",
+]
 
 SourceEvent = Chunk | SourceUp | SourceDown
 
@@ -64,15 +75,22 @@ SIMULATED_ON_FIELD = "guidance_app.sources.simulated:open_simulated_on"
 """The one source that wants to know what it is for."""
 
 
-def open_receiver(job: "Job", number: int | None = None) -> Source:
+def takes_corrections(uri: str) -> bool:
+    """Whether what is sent to this source reaches the receiver."""
+    return uri.partition(":")[0].lower() in TAKE_CORRECTIONS
+
+
+def open_receiver(
+    job: "Job", number: int | None = None, caster: "Caster | None" = None, traffic: "Traffic | None" = None
+) -> Source:
     """The source of a job's receiver, with its attitude sensor; a simulated tractor drives that job.
 
     That tractor stands where the plan's pass of this ``number`` begins, as after a stop on it; without one where the
-    first does. Raises ``SourceError``.
+    first does. ``caster`` is where corrections come from, ``traffic`` counts them. Raises ``SourceError``.
     """
     receiver = job.receiver
     if receiver.source.partition(":")[0].lower() != SIMULATED:
-        return open_source(receiver.source, receiver.attitude_source)
+        return _beside(_open_one(receiver.source), receiver.source, receiver.attitude_source, caster, traffic)
     opener = cast("Callable[[str, Job, int | None], Source]", _named(SIMULATED_ON_FIELD))
     simulated = opener(receiver.source, job, number)
     return _beside(_in_time(simulated), receiver.source, receiver.attitude_source)
@@ -87,18 +105,24 @@ def open_source(uri: str, attitude: str | None = None, caster: "Caster | None" =
     return _beside(_open_one(uri), uri, attitude, caster)
 
 
-def _beside(receiver: Source, uri: str, attitude: str | None, caster: "Caster | None" = None) -> Source:
+def _beside(
+    receiver: Source,
+    uri: str,
+    attitude: str | None,
+    caster: "Caster | None" = None,
+    traffic: "Traffic | None" = None,
+) -> Source:
     if attitude is None and caster is None:
         return receiver
     merged = cast("Callable[[Mapping[str, Source]], Source]", _named("guidance_app.sources.merged:Merged"))
     beside = {} if attitude is None else {ATTITUDE: _open_one(attitude)}
     if caster is None:
         return merged({RECEIVER: receiver, **beside})
-    if uri.partition(":")[0].lower() not in TAKE_CORRECTIONS:
+    if not takes_corrections(uri):
         msg = sentence("'{uri}' takes no corrections: a receiver at a serial:// or tcp:// address does.", uri=uri)
         raise SourceError(msg)
-    corrected = cast("Callable[[Source, Caster], Mapping[str, Source]]", _named("guidance_app.sources.ntrip:corrected"))
-    return merged({**corrected(receiver, caster), **beside})
+    corrected = cast("Corrected", _named("guidance_app.sources.ntrip:corrected"))
+    return merged({**corrected(receiver, caster, traffic), **beside})
 
 
 def _open_one(uri: str) -> Source:

@@ -20,11 +20,12 @@ from guidance_app.sources import Source, SourceError, SourceEvent
 from guidance_app.sources.addresses import SocketConnection, dial
 from guidance_app.sources.kept import Kept, LinkError, Pauses
 
-__all__ = ["Caster", "Corrections", "Overheard", "caster_from_uri", "corrected"]
+__all__ = ["Caster", "Corrections", "Overheard", "Traffic", "caster_from_uri", "corrected", "first_corrections"]
 
 PORT = 2101
 GGA_EVERY_S = 10.0
 ANSWER_S = 10.0
+TRY_S = 10.0
 SILENT_S = 60.0
 """A caster that waits for a position sends nothing until it has one."""
 
@@ -75,6 +76,19 @@ def caster_from_uri(uri: str, password: str | None = None) -> Caster:
     return Caster(parts.hostname, port, mount, unquote(parts.username or ""), secret)
 
 
+class Traffic:
+    """How many bytes of corrections have come, and when the newest did (monotonic seconds). Any thread may read it."""
+
+    def __init__(self) -> None:
+        self.received = 0
+        self.newest: float | None = None
+
+    def note(self, count: int) -> None:
+        """So many more, now."""
+        self.received += count
+        self.newest = time.monotonic()
+
+
 class Corrections:
     """A source that gives no bytes to decode: it says whether the caster is there, and hands on what it sends."""
 
@@ -82,15 +96,21 @@ class Corrections:
     duration: float | None = None
 
     def __init__(
-        self, caster: Caster, send: Callable[[bytes], bool], pauses: Pauses = PAUSES, gga_every_s: float = GGA_EVERY_S
+        self,
+        caster: Caster,
+        send: Callable[[bytes], bool],
+        pauses: Pauses = PAUSES,
+        gga_every_s: float = GGA_EVERY_S,
+        traffic: Traffic | None = None,
     ) -> None:
         self.description = caster.what
         self._caster = caster
         self._send = send
         self._gga_every_s = gga_every_s
+        self._traffic = traffic or Traffic()
         self._position = b""
         self._rest = b""
-        self._kept = Kept(caster.what, self._connect, pauses, CORRECTIONS)
+        self._kept = Kept(caster.what, self.connect, pauses, CORRECTIONS)
 
     def hear(self, data: bytes) -> None:
         """Bytes of the receiver, on its own thread: the newest whole GGA with a position is kept."""
@@ -111,7 +131,8 @@ class Corrections:
         """``SourceUp`` when the caster gives corrections, ``SourceDown`` when it does not, until ``stop`` is set."""
         yield from self._kept.events(stop)
 
-    def _connect(self, stop: threading.Event) -> "_Stream":
+    def connect(self, stop: threading.Event) -> "_Stream":
+        """The caster's stream, when it has accepted the request. Raises ``LinkError``."""
         caster = self._caster
         connection = SocketConnection(dial(caster.host, caster.port, stop), caster.what, SILENT_S)
         try:
@@ -123,6 +144,7 @@ class Corrections:
 
     def pass_on(self, data: bytes) -> None:
         """Sends corrections to the receiver; while its port is closed they are lost, like those of that time."""
+        self._traffic.note(len(data))
         self._send(data)
 
     @property
@@ -283,10 +305,26 @@ def _size_of(line: bytes) -> int:
     return size
 
 
-def corrected(receiver: Kept, caster: Caster) -> Mapping[str, Source]:
-    """The receiver and the corrections that it gets, by the names of their links."""
-    corrections = Corrections(caster, receiver.write)
+def corrected(receiver: Kept, caster: Caster, traffic: Traffic | None = None) -> Mapping[str, Source]:
+    """The receiver and the corrections that it gets, by the names of their links; ``traffic`` counts them."""
+    corrections = Corrections(caster, receiver.write, traffic=traffic)
     return {RECEIVER: Overheard(receiver, corrections.hear), CORRECTIONS: corrections}
+
+
+def first_corrections(caster: Caster, patience: float = TRY_S) -> int:
+    """How many bytes come first, sent to nobody; 0 when it accepts the request and sends nothing in time.
+
+    Raises ``LinkError`` when it is not there, or refuses.
+    """
+    traffic = Traffic()
+    deadline = time.monotonic() + patience
+    stream = Corrections(caster, lambda _: True, traffic=traffic).connect(threading.Event())
+    try:
+        while not traffic.received and time.monotonic() < deadline:
+            stream.read()
+    finally:
+        stream.close()
+    return traffic.received
 
 
 class Overheard:

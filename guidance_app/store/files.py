@@ -57,6 +57,9 @@ _RESERVED = frozenset(
 """Names that Windows keeps for devices."""
 
 
+_NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+
+
 class StoreError(Exception):
     """Something could not be stored, found or read; the message is one sentence with what to do."""
 
@@ -95,8 +98,10 @@ def free_path(folder: Path, stem: str, suffix: str = "") -> Path:
     return next(path for path in numbered if not path.exists())
 
 
-def write_atomically(path: Path, content: bytes) -> str:
+def write_atomically(path: Path, content: bytes, mode: int = 0o666) -> str:
     """Replaces the file by this content, whole or not at all, and gives its revision. Raises ``StoreError``.
+
+    ``mode`` says who may read it, less what the system takes away; from its first byte on.
 
     Only under ``FolderLock.writing``.
     """
@@ -104,7 +109,8 @@ def write_atomically(path: Path, content: bytes) -> str:
     try:
         _make_folders(path.parent)
         try:
-            with temporary.open("wb") as file:
+            temporary.unlink(missing_ok=True)  # it may be somebody else's to read
+            with os.fdopen(os.open(temporary, _NEW, mode), "wb") as file:
                 file.write(content)
                 sync_file(file)
             temporary.replace(path)

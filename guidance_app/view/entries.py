@@ -44,7 +44,8 @@ class EntryKind(enum.StrEnum):
 class Entry:
     """One member of a document. Bounds are inclusive, in the document's unit; texts are English, to be said by words.
 
-    ``choices`` are values with their labels. ``when`` names another member and the values of which it must have one.
+    ``choices`` are values with their labels; a ``secret`` is shown as dots. ``when`` names another member and the
+    values of which it must have one.
     """
 
     member: str
@@ -59,6 +60,7 @@ class Entry:
     choices: tuple[tuple[str, str], ...] = ()
     when: tuple[str, tuple[str, ...]] | None = None
     picture: str | None = None
+    secret: bool = False
 
 
 def entries_of(model: type[BaseModel], members: Sequence[str] | None = None) -> tuple[Entry, ...]:
@@ -92,6 +94,7 @@ def _entry(member: str, info: FieldInfo) -> Entry | None:
         choices=choices,
         when=_when(extra.get("when")),
         picture=str(extra["picture"]) if "picture" in extra else None,
+        secret=bool(extra.get("secret")),
     )
 
 

@@ -6,12 +6,22 @@ from dataclasses import dataclass
 
 from guidance_app.decode.nmea import SENTENCES
 from guidance_app.language import Words
-from guidance_app.model import ATTITUDE, CORRECTIONS, LinkStatus, Satellite, Snapshot
+from guidance_app.model import ATTITUDE, CORRECTIONS, LinkState, LinkStatus, Satellite, Snapshot
 from guidance_app.view.bar_states import QUALITIES
 from guidance_app.view.links import sensor_words
 from guidance_app.view.status import ABSENT, Level, age_words, link_words
 
-__all__ = ["ReceiverView", "SkyDot", "grid_words", "raw_text", "receiver_view", "sent_words", "sky_dots", "sky_words"]
+__all__ = [
+    "ReceiverView",
+    "SkyDot",
+    "caster_words",
+    "grid_words",
+    "raw_text",
+    "receiver_view",
+    "sent_words",
+    "sky_dots",
+    "sky_words",
+]
 
 COARSE, FINE = 0.03, 0.003
 """Metres of rounding: from the first on a driver sees it jump, below the second it is lost in the noise."""
@@ -24,6 +34,9 @@ SYSTEMS: Mapping[str, str] = {"GP": "G", "GL": "R", "GA": "E", "GB": "C", "BD": 
 
 FIRST_SBAS, LAST_SBAS = 33, 64
 """Numbers that a GPS talker uses for the satellites of WAAS, EGNOS and MSAS."""
+
+SPARSE_S = 15.0
+"""Casters send something every second, at least the reference position every ten."""
 
 MOST_KINDS = 14
 _SEVERAL = ("PTNL", "PSXN", "PASHR", "UNIHEADINGA")
@@ -85,6 +98,21 @@ def _fix_rows(snapshot: Snapshot, now: float, words: Words) -> tuple[tuple[str, 
         ("HDOP", ABSENT if fix.hdop is None else words.number(fix.hdop, 1)),
         (words("Corrections"), corrections),
     )
+
+
+def caster_words(state: LinkState, received: int, age: float | None, words: Words) -> tuple[str, Level]:
+    """What comes from the caster: ``received`` bytes in this drive, the newest ``age`` seconds ago."""
+    if state.status is LinkStatus.DOWN:
+        return words("No corrections: {reason}", reason=words.say(state.reason)), "bad"
+    if state.status is not LinkStatus.CORRECTED:
+        return words("connecting"), "fair"
+    if age is None:
+        return words("{what} is connected and has sent nothing yet.", what=state.what), "fair"
+    size = f"{words.number(received / 1000, 1)} kB"
+    said = words(
+        "{what}: {size} received, the newest {age} ago.", what=state.what, size=size, age=age_words(age, words)
+    )
+    return said, "good" if age < SPARSE_S else "fair"
 
 
 def _link_rows(snapshot: Snapshot, rate: float, now: float, words: Words) -> tuple[tuple[str, str], ...]:

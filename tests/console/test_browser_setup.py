@@ -99,6 +99,17 @@ def test_from_nothing_to_a_drive_by_name(console: Console, open_page: OpenPage) 
     assert console.house.driving
 
 
+def test_a_casters_password_is_dots(console: Console, open_page: OpenPage) -> None:
+    page = opened(console, open_page)
+    page.get_by_role("tab", name="Receiver").tap()
+    page.get_by_text("Corrections (NTRIP)").tap()
+    for title, security in (("User", "none"), ("Password", "disc")):
+        entry(page, title).tap()
+        entry(page, title).fill("s3cret")
+        expect(entry(page, title)).to_have_css("-webkit-text-security", security)
+    expect(entry(page, "Password")).to_have_attribute("autocomplete", "off")
+
+
 def test_markup_in_names_is_text_everywhere(console: Console, open_page: OpenPage) -> None:
     store = console.house.store
     assert store is not None

@@ -7,11 +7,14 @@ from pathlib import Path
 import pytest
 import viser
 from support.cables import Cable
+from support.caster import MOUNT, PASSWORD, USER, LocalCaster, local_caster
 from support.nmea import epoch, sentence
 from support.setup_place import SetupPlace, setup_place
 
+from guidance_app.documents.caster import CasterAccount
 from guidance_app.sources import SourceError
 from guidance_app.sources.ports import FoundPort
+from guidance_app.store.caster import ACCOUNT, caster_account, keep_caster_account
 
 NOON = 43200.0
 SKY = (
@@ -107,3 +110,93 @@ def test_looking_again_finds_what_was_plugged_in(place: SetupPlace) -> None:
 def test_an_address_without_end_is_refused(place: SetupPlace) -> None:
     with pytest.raises(SourceError, match="too long"):
         place.house.use_source("tcp://" + "a" * 400 + ":1")
+
+
+# --- corrections ---------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def stored(server: viser.ViserServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[SetupPlace]:
+    """Nothing driven, and a data folder to keep things in."""
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    with setup_place(server, tmp_path / "data") as one:
+        yield one
+
+
+@pytest.fixture
+def caster() -> Iterator[LocalCaster]:
+    with local_caster(2, again=True) as one:
+        yield one
+
+
+def fill_in(place: SetupPlace, caster: LocalCaster, **changes: str) -> None:
+    said = {"Caster": "127.0.0.1", "Mount point": MOUNT, "User": USER, "Password": PASSWORD, **changes}
+    for label, value in {**said, "Port of the caster": str(caster.server.port)}.items():
+        place.until(lambda label=label: place.newest(label))
+        place.fill(label, value)
+
+
+def test_a_caster_is_entered_tried_kept_and_corrects_the_next_drive(
+    stored: SetupPlace, cable: Cable, caster: LocalCaster
+) -> None:
+    stored.says("No caster is entered")
+    fill_in(stored, caster, Password="wrong")
+    stored.press("Try it")
+    stored.says("the caster 127.0.0.1 refuses user and password: check both")
+    fill_in(stored, caster, **{"Mount point": "ELSEWHERE"})
+    stored.press("Try it")
+    stored.says("has no mount point ELSEWHERE: check its name")
+    assert caster_account(stored.store.root) is None
+    fill_in(stored, caster)
+    stored.press("Try it")
+    stored.says(f"{MOUNT} gives corrections")
+    stored.press("Save the caster")
+    stored.until(lambda: caster_account(stored.store.root))
+    assert caster_account(stored.store.root).password == PASSWORD
+    stored.until(lambda: stored.newest("Password")["value"] == "")
+    stored.says(f"{MOUNT} of 127.0.0.1 is asked when a drive begins")
+    stored.house.use_source(f"serial://{cable.path}?baud=115200")
+    stored.says(f"{MOUNT} of 127.0.0.1: .* kB received, the newest .* ago")
+    assert stored.house.corrections.received > 0
+
+
+def test_the_kept_password_is_never_shown_and_goes_to_no_other_caster(stored: SetupPlace, caster: LocalCaster) -> None:
+    account = CasterAccount(host="127.0.0.1", port=caster.server.port, mount="OLD", user=USER, password=PASSWORD)
+    keep_caster_account(stored.store.root, account)
+    stored.screen._renew()
+    stored.until(lambda: (one := stored.newest("Mount point")) and one["value"] == "OLD")
+    assert stored.newest("Password")["value"] == ""
+    stored.fill("Mount point", MOUNT)
+    stored.press("Save the caster")
+    stored.until(lambda: caster_account(stored.store.root).mount == MOUNT)
+    assert caster_account(stored.store.root).password == PASSWORD
+    stored.fill("User", "another")
+    stored.press("Save the caster")
+    stored.until(lambda: caster_account(stored.store.root).user == "another")
+    assert caster_account(stored.store.root).password == ""
+    assert PASSWORD not in str(stored.client.messages)
+    stored.press("Forget the caster")
+    stored.says("The caster and its password are forgotten")
+    assert not (stored.store.root / ACCOUNT).exists()
+
+
+def test_what_is_wrong_with_a_caster_stands_under_its_entry(stored: SetupPlace, caster: LocalCaster) -> None:
+    fill_in(stored, caster, Caster="ntrip://127.0.0.1/")
+    stored.press("Save the caster")
+    stored.says("Write the caster.*s name alone")
+    assert not (stored.store.root / ACCOUNT).exists()
+
+
+def test_a_receiver_that_takes_no_corrections_is_said(stored: SetupPlace, caster: LocalCaster) -> None:
+    fill_in(stored, caster)
+    stored.press("Save the caster")
+    stored.says("Kept")
+    stored.house.use_source("sim:")
+    stored.says("This receiver takes no corrections")
+
+
+def test_a_damaged_account_is_said_where_it_is_entered(stored: SetupPlace) -> None:
+    stored.store.root.mkdir(exist_ok=True)
+    (stored.store.root / ACCOUNT).write_text("{", encoding="utf-8")
+    stored.screen._renew()
+    stored.says("is damaged: enter it again")

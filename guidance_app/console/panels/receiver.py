@@ -6,7 +6,9 @@ from urllib.parse import quote
 
 import viser
 
+from guidance_app.console.corrections_form import CorrectionsForm
 from guidance_app.console.desk import Desk, Hands
+from guidance_app.console.forms import FORM_STYLE
 from guidance_app.console.sky import SKY_STYLE, sky_svg
 from guidance_app.console.widgets import Shown, notice_html, rows_html, words_html
 from guidance_app.language import message
@@ -41,7 +43,7 @@ class Receiver:
         self._raw_wanted = False
         self._asked: str | None = None
         self._round = 0
-        gui.add_html(SKY_STYLE + RAW_STYLE)
+        gui.add_html(SKY_STYLE + RAW_STYLE + FORM_STYLE)
         self._link = Shown(gui)
         self._notices = Shown(gui)
         self._grid = Shown(gui)
@@ -57,6 +59,7 @@ class Receiver:
             self._use = gui.add_button(words("Use this receiver"), color="green")
             self._stay = gui.add_button(words("No, keep this one"), color="gray", visible=False)
             self._warning = Shown(gui)
+        self._corrections = CorrectionsForm(gui, hands)
         self._listen()
         hands.later(self._find)
 
@@ -116,6 +119,7 @@ class Receiver:
         """Brings everything up to now, once a second."""
         self._ask()
         self._offer()
+        self._corrections.show(desk)
         self._round += 1
         if self._round % WORDS_EVERY != 1:
             return
