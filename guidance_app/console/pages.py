@@ -11,7 +11,7 @@ import viser
 
 from guidance_app.console.desk import Desk, Hands
 
-__all__ = ["Page", "Pages", "Still", "press"]
+__all__ = ["MakePage", "Page", "Pages", "Still", "press"]
 
 
 class Page(Protocol):

@@ -1,5 +1,6 @@
 """The recordings panel: what was driven, to look at, to replay, to compare and to hand in."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -8,7 +9,7 @@ import viser
 from guidance_app.batch.reviewing import Review, opened_review
 from guidance_app.batch.taking_in import taken_in
 from guidance_app.console.desk import Desk, Hands, Place
-from guidance_app.console.pages import Page, Pages, press
+from guidance_app.console.pages import MakePage, Page, Pages, press
 from guidance_app.console.reviewing.listing import ListWays, RecordingList
 from guidance_app.console.reviewing.looking import Looking, Ways
 from guidance_app.console.reviewing.several import LedgerOfSeveral
@@ -18,7 +19,7 @@ from guidance_app.runtime import ReplaySession, cache_folder
 from guidance_app.store import Removed, StoreError
 from guidance_app.store.recordings import open_recording
 from guidance_app.store.recordings_keeping import bring_back, remove_recording
-from guidance_app.store.recordings_list import list_recordings
+from guidance_app.store.recordings_list import ListedRecording, list_recordings
 
 __all__ = ["Recordings"]
 
@@ -34,6 +35,8 @@ class Recordings:
         self._hands = hands
         self._pages = Pages(gui, hands)
         self._removed: Removed | None = None
+        self._asked = 0
+        """Counts the pages that were asked for: what is read for one comes too late once another is wished for."""
         self._go_to(0)
 
     def show(self, desk: Desk) -> None:
@@ -43,7 +46,24 @@ class Recordings:
     def _go_to(self, page: int, said: tuple[str, ...] = ()) -> None:
         undo = None if self._removed is None else self._undo
         ways = ListWays(self._look, self._go_to, self._ledger, self._take, undo)
-        self._pages.turn(lambda gui: RecordingList(gui, self._hands, page, ways, said))
+
+        def listed(found: tuple[ListedRecording, ...]) -> MakePage:
+            return lambda gui: RecordingList(gui, self._hands, found, page, ways, said)
+
+        self._turn_with(listed)
+
+    def _turn_with(self, made: Callable[[tuple[ListedRecording, ...]], MakePage]) -> None:
+        """Another page once the recordings have been looked through, which takes a moment where there are many."""
+        self._asked += 1
+        asked = self._asked
+
+        def look() -> None:
+            store = self._hands.house.store
+            found = () if store is None else list_recordings(store.root)
+            if asked == self._asked:
+                self._pages.turn(made(found))
+
+        self._hands.house.aside(look)
 
     # --- what comes, goes and comes back ---------------------------------------------------------------------------
 
@@ -73,7 +93,10 @@ class Recordings:
         self._hands.later(work)
 
     def _ledger(self) -> None:
-        self._pages.turn(lambda gui: LedgerOfSeveral(gui, self._hands, self._data, lambda: self._go_to(0)))
+        def ledger(found: tuple[ListedRecording, ...]) -> MakePage:
+            return lambda gui: LedgerOfSeveral(gui, self._hands, self._data, found, lambda: self._go_to(0))
+
+        self._turn_with(ledger)
 
     @property
     def _data(self) -> Path:
@@ -84,6 +107,7 @@ class Recordings:
     # --- one of them -----------------------------------------------------------------------------------------------
 
     def _look(self, path: Path) -> None:
+        self._asked += 1
         progress = _Progress(self._hands)
         self._pages.turn(progress.on)
         self._hands.later(lambda: self._open(path, progress))
@@ -96,14 +120,12 @@ class Recordings:
         except StoreError:
             self._go_to(0)
             raise
-        self._pages.turn(lambda gui: self._looking(gui, path, review))
+        self._turn_with(lambda found: lambda gui: self._looking(gui, path, review, found))
 
-    def _looking(self, gui: viser.GuiApi, path: Path, review: Review) -> Page:
+    def _looking(self, gui: viser.GuiApi, path: Path, review: Review, found: tuple[ListedRecording, ...]) -> Page:
         ways = Ways(lambda: self._go_to(0), lambda: self._replay(path))
         page = Looking(gui, self._hands, path, review, ways)
-        store = self._hands.house.store
-        others = [] if store is None else [one for one in list_recordings(store.root) if one.summary is not None]
-        paths = [one.path for one in others if one.path != path]
+        paths = [one.path for one in found if one.summary is not None and one.path != path]
         if paths:
             self._offer_comparison(gui, page, paths)
         press(gui, self._hands.words("Delete this recording"), lambda: self._delete(path))

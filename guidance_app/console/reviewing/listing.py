@@ -16,7 +16,7 @@ from guidance_app.console.pages import press
 from guidance_app.console.widgets import Shown, buttons, note_html, notice_html
 from guidance_app.language import Words
 from guidance_app.store import StoreError
-from guidance_app.store.recordings_list import ListedRecording, list_recordings
+from guidance_app.store.recordings_list import ListedRecording
 from guidance_app.view.review import thumbnail_svg
 from guidance_app.view.status import clock
 from guidance_app.view.units import area_text
@@ -43,15 +43,21 @@ class ListWays:
 
 
 class RecordingList:
-    """One page of the list, with sentences ``said`` on what was just done."""
+    """One page of the recordings ``found``, with sentences ``said`` on what was just done."""
 
-    def __init__(self, gui: viser.GuiApi, hands: Hands, page: int, ways: ListWays, said: tuple[str, ...] = ()) -> None:
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        hands: Hands,
+        found: tuple[ListedRecording, ...],
+        page: int,
+        ways: ListWays,
+        said: tuple[str, ...] = (),
+    ) -> None:
         self._hands = hands
         self._words = words = hands.words
         self._maps: dict[Path, Shown] = {}
         self._drawn: queue.SimpleQueue[tuple[ListedRecording, str]] = queue.SimpleQueue()
-        store = hands.house.store
-        found = () if store is None else list_recordings(store.root)
         if said:
             gui.add_html(notice_html(said))
         if ways.undo is not None:

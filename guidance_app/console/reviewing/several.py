@@ -15,7 +15,7 @@ from guidance_app.console.pages import press
 from guidance_app.console.reviewing.sheets import MEDIA_TYPES
 from guidance_app.console.widgets import Shown, buttons, notice_html, progress_html
 from guidance_app.reports import SHEETS
-from guidance_app.store.recordings_list import list_recordings
+from guidance_app.store.recordings_list import ListedRecording
 from guidance_app.view.units import area_text
 
 __all__ = ["LedgerOfSeveral"]
@@ -24,13 +24,20 @@ ANY = 0
 
 
 class LedgerOfSeveral:
-    """Choices of days and field, a button, progress, and the sheets."""
+    """Choices of days and field of the recordings ``found``, a button, progress, and the sheets."""
 
-    def __init__(self, gui: viser.GuiApi, hands: Hands, data: Path, back: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        hands: Hands,
+        data: Path,
+        found: tuple[ListedRecording, ...],
+        back: Callable[[], None],
+    ) -> None:
         self._hands = hands
         self._words = words = hands.words
         self._data = data
-        self._found = [one for one in list_recordings(data) if one.summary is not None and not one.being_written]
+        self._found = [one for one in found if one.summary is not None and not one.being_written]
         self._days = sorted({day for one in self._found if (day := day_of(one)) is not None}, reverse=True)
         self._fields = sorted({one.summary.field for one in self._found if one.summary and one.summary.field})
         self._addresses: list[str] = []
