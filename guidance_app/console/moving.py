@@ -266,7 +266,9 @@ class ClientScene:
         """Numbers are laid out anew when the tractor has come a step farther, not at every redraw."""
         if self._home is None:
             return
-        layout = number_layout(self._mode, math.dist(self._home.position, self._home.look_at))
+        layout = number_layout(
+            self._mode, math.dist(self._home.position, self._home.look_at), self._job.implement.spacing
+        )
         place = None
         if shown is not None and self._mode.follows:
             step = layout.every / 8

@@ -165,11 +165,15 @@ class NumberLayout:
     reach: float = math.inf
 
 
-def number_layout(mode: ViewMode, camera_distance: float) -> NumberLayout:
-    """Sizes follow the camera's distance, so that a number looks equally large near and far."""
+def number_layout(mode: ViewMode, camera_distance: float, spacing: float) -> NumberLayout:
+    """Sizes follow the camera's distance, so that a number looks equally large near and far.
+
+    A driver's stand between their line and the next one, ``spacing`` away, as long as they can be read there.
+    """
     d = camera_distance
     if mode is ViewMode.DRIVER:
-        return NumberLayout(ahead=1.25 * d, every=0.8 * d, size=0.05 * d, stretch=3.0, most=9, reach=1.3 * d)
+        size = min(0.05 * d, max(0.19 * spacing, 0.025 * d))
+        return NumberLayout(ahead=1.25 * d, every=0.8 * d, size=size, stretch=3.0, most=9, reach=1.3 * d)
     if mode is ViewMode.WHOLE_FIELD:
         return NumberLayout(ahead=0.0, every=1.0, size=0.0145 * d, stretch=1.0, most=MOST_NUMBERS)
     return NumberLayout(ahead=0.16 * d, every=0.32 * d, size=0.015 * d, stretch=1.0, most=17, reach=d)

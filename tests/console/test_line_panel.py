@@ -36,15 +36,18 @@ def test_with_a_plan_the_rest_is_there_and_without_one_the_line(server: viser.Vi
         assert not client.control("Begin here (A)")
 
 
-def test_a_line_is_begun_ended_and_given_up(stage: Stage) -> None:
+def test_a_line_is_begun_ended_and_given_up(server: viser.ViserServer, stage: Stage) -> None:
     with stage.client() as client:
         assert posted(stage, client, lambda: client.press("Begin here (A)")) == BeginLine(LineKind("ab"))
         stage.session.publish(
             replace(stage.session.snapshot(), line_begun=LineBegun(LineKind.AB, (0.0, 0.0), 24.2), sequence=900)
         )
         stage.tick_until(client, lambda: "24 m from A: drive on, press End at B." in client.words())
+        assert server.scene.get_handle_by_name("/w/flags/line") is not None
         assert posted(stage, client, lambda: client.press("End here (B)")) == EndLine()
         assert posted(stage, client, lambda: client.press("Give up")) == DropLine()
+        stage.session.publish(replace(stage.session.snapshot(), line_begun=None, sequence=901))
+        stage.tick_until(client, lambda: server.scene.get_handle_by_name("/w/flags/line") is None)
 
 
 def test_a_plus_takes_a_typed_heading_or_the_tractors(stage: Stage) -> None:

@@ -169,7 +169,7 @@ def test_different_numbers_look_different() -> None:
 @pytest.mark.parametrize("count", [1, 12, 300])
 def test_numbers_are_few_enough_to_read(mode: ViewMode, count: int) -> None:
     snapshot = replace(field_snapshot(target=1), passes=straight_passes(count, spacing=3.0))
-    layout = number_layout(mode, 60.0)
+    layout = number_layout(mode, 60.0, 6.0)
     shown = Shown(10.0, 60.0, 0.0, heading_known=True, stale=False)
     lines = numbers(snapshot, shown, mode, layout, DAY)
     assert 0 < len(lines.points) <= MOST_NUMBERS * 3 * 24
@@ -178,16 +178,28 @@ def test_numbers_are_few_enough_to_read(mode: ViewMode, count: int) -> None:
 
 def test_numbers_stand_upright_for_a_driver_who_comes_back() -> None:
     snapshot = field_snapshot()
-    layout = number_layout(ViewMode.DRIVER, 17.0)
+    layout = number_layout(ViewMode.DRIVER, 17.0, 6.0)
     there = numbers(snapshot, Shown(18.0, 60.0, 0.0, heading_known=True, stale=False), ViewMode.DRIVER, layout, DAY)
     back = numbers(snapshot, Shown(18.0, 90.0, math.pi, heading_known=True, stale=False), ViewMode.DRIVER, layout, DAY)
     assert there.points[..., 1].mean() > 60.0
     assert back.points[..., 1].mean() < 90.0
 
 
+@pytest.mark.parametrize("number", [-12, -1, 3])
+def test_a_number_stands_between_its_line_and_the_next_one(number: int) -> None:
+    """Of an implement 3 m wide: beside another line it would be read as that one's."""
+    layout = number_layout(ViewMode.DRIVER, 20.0, 3.0)
+    line = Pass(number, np.array([[0.0, 0.0], [0.0, 100.0]]), endless=True)
+    shown = Shown(0.0, 0.0, 0.0, heading_known=True, stale=False)
+    snapshot = replace(field_snapshot(), passes=(line,), guidance=None)
+    strokes = numbers(snapshot, shown, ViewMode.DRIVER, layout, DAY).points
+    assert strokes[..., 0].min() > 0.0
+    assert strokes[..., 0].max() < 3.0
+
+
 def test_numbers_of_the_whole_field_stand_outside_of_it() -> None:
     snapshot = field_snapshot()
-    lines = numbers(snapshot, None, ViewMode.WHOLE_FIELD, number_layout(ViewMode.WHOLE_FIELD, 260.0), DAY)
+    lines = numbers(snapshot, None, ViewMode.WHOLE_FIELD, number_layout(ViewMode.WHOLE_FIELD, 260.0, 6.0), DAY)
     field = shapely.Polygon(FIELD)
     assert not any(field.contains(shapely.Point(stroke[0, :2])) for stroke in lines.points)
 
@@ -198,7 +210,7 @@ def test_numbers_of_the_whole_field_do_not_stand_on_each_other() -> None:
         for number, east in enumerate(np.linspace(40.0, 43.0, 12), start=1)
     ]
     snapshot = replace(field_snapshot(), passes=(*straight_passes(6), *short))
-    layout = number_layout(ViewMode.WHOLE_FIELD, 260.0)
+    layout = number_layout(ViewMode.WHOLE_FIELD, 260.0, 6.0)
     lines = numbers(snapshot, None, ViewMode.WHOLE_FIELD, layout, DAY)
     strokes = shapely.union_all([shapely.LineString(one[:, :2]).buffer(0.2 * layout.size) for one in lines.points])
     heights = [part.bounds[3] - part.bounds[1] for part in shapely.get_parts(strokes)]
@@ -207,7 +219,7 @@ def test_numbers_of_the_whole_field_do_not_stand_on_each_other() -> None:
 
 @pytest.mark.parametrize("mode", [ViewMode.DRIVER, ViewMode.HEADING_UP, ViewMode.NORTH_UP])
 def test_numbers_of_lines_that_lie_close_do_not_stand_on_each_other(mode: ViewMode) -> None:
-    layout = number_layout(mode, 20.0)
+    layout = number_layout(mode, 20.0, 6.0)
     close = straight_passes(20, spacing=0.4 * layout.size)
     snapshot = replace(field_snapshot(), passes=close)
     shown = Shown(6.0, 60.0, 0.0, heading_known=True, stale=False)
@@ -225,7 +237,7 @@ def test_the_target_has_its_number_in_the_whole_field_whatever_is_left_out() -> 
     for number in (1, 2, 3):
         target = next(one for one in snapshot.passes if one.number == number)
         driven = replace(snapshot, guidance=replace(snapshot.guidance, target=target))
-        lines = numbers(driven, None, ViewMode.WHOLE_FIELD, number_layout(ViewMode.WHOLE_FIELD, 2000.0), DAY)
+        lines = numbers(driven, None, ViewMode.WHOLE_FIELD, number_layout(ViewMode.WHOLE_FIELD, 2000.0, 6.0), DAY)
         assert (lines.colours == colour).all(axis=-1).any()
 
 
