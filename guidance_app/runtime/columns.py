@@ -4,6 +4,7 @@ They wait in a file, not in memory: one of the drive's resume points, else a nam
 on them: where they cannot be written they are made from the recording when it is opened.
 """
 
+import contextlib
 import logging
 import os
 import queue
@@ -100,4 +101,5 @@ class LiveColumns:
     def close(self) -> None:
         """Forgets them."""
         if self._file is not None:
-            self._file.close()
+            with contextlib.suppress(OSError):  # what the disk does not take any more is made anew when it is opened
+                self._file.close()

@@ -2,6 +2,7 @@
 
 import gzip
 import pickle
+import resource
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +14,12 @@ from guidance_app import decoding_beside
 from guidance_app.batch.drive_log import drive_log
 from guidance_app.batch.reviewing import opened_review
 from guidance_app.decoding_beside import DecodedEvents
+from guidance_app.engine import Engine
 from guidance_app.engine.hearing import Hearing
 from guidance_app.model import Chunk, DriveLog, SetWork, Snapshot
 from guidance_app.recording import LineWriter, RecordedDrive
 from guidance_app.runtime import LiveSession, cache_folder, live, recorded_session, resume_points, resumed_session
+from guidance_app.runtime.columns import LiveColumns
 from guidance_app.runtime.resume_points import ResumePoints
 from guidance_app.store.recordings import EVENTS, PACKED, open_recording
 
@@ -231,3 +234,23 @@ def test_a_packed_drive_has_the_same_inputs(cut_off: Path) -> None:
     again, _ = points_of(cut_off)
     assert again.found is not None
     assert again.found.count == points.found.count
+
+
+def test_columns_that_the_disk_does_not_take_any_more_are_left_in_peace() -> None:
+    columns = LiveColumns()
+    heard = taken_snapshots(path_chunks(up_and_down(passes=1))[:3])
+    for snapshot in heard:
+        columns.look_at(snapshot)
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (10, before[1]))
+    try:
+        columns.flush()
+        assert columns.whole() is None
+        columns.close()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def taken_snapshots(chunks: list[Chunk]) -> list[Snapshot]:
+    engine = Engine(a_job())
+    return [engine.step(chunk) for chunk in chunks]
