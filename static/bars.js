@@ -24,6 +24,7 @@ export function makeBars(canvas, style) {
   };
 
   // --- drawing ---
+  const LABEL = 13;
   const font = (pixels, weight = 700) => {
     pen.font = `${weight} ${pixels}px ${FONT}`;
   };
@@ -213,14 +214,21 @@ export function makeBars(canvas, style) {
     pen.fill();
     pen.restore();
     if (place.phone) return;
-    const outside = (message.p >= 0 ? 1 : -1) * (Math.abs(message.p) > 750 ? -1 : 1);
+    // Beside the mark, away from the middle; toward it where the bar's own words stand there; on a short bar not at all.
+    font(LABEL, 700);
+    const least = place.from + 22 + pen.measureText(capitals(style.words.heading)).width;
+    const most = place.from + place.span - 22 - pen.measureText(style.words.ahead).width;
     font(15, 650);
-    words(message.e, x + outside * (tall + 8), y + 1, colours.ink, outside > 0 ? "left" : "right");
+    const reach = tall + 8 + pen.measureText(message.e).width;
+    const sides = message.p >= 0 ? [1, -1] : [-1, 1];
+    const side = sides.find((one) => (one > 0 ? x + reach <= most : x - reach >= least));
+    if (!side) return;
+    words(message.e, x + side * (tall + 8), y + 1, colours.ink, side > 0 ? "left" : "right");
   };
 
   const labels = (place) => {
     const y = place.trackTop + place.trackHeight / 2 + 1;
-    font(place.phone ? 11 : 13, 700);
+    font(place.phone ? 11 : LABEL, 700);
     words(capitals(style.words.heading), place.from + 14, y, colours.dim, "left");
     words(style.words.ahead, place.from + place.span - 14, y, colours.dim, "right");
   };
