@@ -24,7 +24,13 @@ SLIVER = 0.02
 """Square metres of mainland in a strip that are not worth a pass."""
 
 SHORTEST = 0.5
-"""Metres; a shorter piece of a strip's middle is not worth a pass."""
+"""Metres; a shorter piece of a strip that is not lengthened is not worth a pass."""
+
+BESIDE = 0.2
+"""Swath spacings beside a strip's middle up to which it lies in the mainland where it is not lengthened.
+
+Cut at its middle, half of every slanting end would be worked twice: 2.5 % of a field at 12 m instead of 1.4 %.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,17 +104,26 @@ def cut(mainland: Sequence[Polygon], strips: Strips) -> tuple[Piece, ...]:
 
 
 def cut_inside(mainland: Sequence[Polygon], strips: Strips) -> tuple[Piece, ...]:
-    """The pieces no longer than the strips' middles lie in the mainland: less is worked twice, wedges are missed."""
+    """The pieces no longer than both lines beside the strips' middles lie in the mainland.
+
+    Hardly anything is worked twice at slanting ends, wedges are missed.
+    """
     turned = [shapely.transform(part, strips.along_across) for part in mainland]
-    left, _, right, _ = shapely.total_bounds(turned)
-    middles = [strips.middle(row) for row in range(strips.count)]
-    lines = [shapely.LineString([(left - 1, middle), (right + 1, middle)]) for middle in middles]
     pieces: list[Piece] = []
-    for row, line in enumerate(lines):
-        inner = [shapely.intersection(part, line) for part in turned]
-        bounds = [part.bounds for geometry in inner for part in shapely.get_parts(geometry) if part.length > SHORTEST]
-        pieces.extend(Piece(row, low, high) for low, high in _joined([(west, east) for west, _, east, _ in bounds]))
+    for row in range(strips.count):
+        middle, beside = strips.middle(row), BESIDE * strips.spacing
+        right, left = _crossed(turned, middle - beside), _crossed(turned, middle + beside)
+        both = [(max(one[0], two[0]), min(one[1], two[1])) for one in right for two in left]
+        pieces.extend(Piece(row, low, high) for low, high in sorted(both) if high - low > SHORTEST)
     return tuple(pieces)
+
+
+def _crossed(parts: Sequence[Polygon], across: float) -> list[tuple[float, float]]:
+    """From where to where a line along the strips lies in the mainland."""
+    left, _, right, _ = shapely.total_bounds(list(parts))
+    line = shapely.LineString([(left - 1, across), (right + 1, across)])
+    inner = [piece for part in parts for piece in shapely.get_parts(shapely.intersection(part, line))]
+    return _joined([(piece.bounds[0], piece.bounds[2]) for piece in inner if piece.length > SHORTEST])
 
 
 def _spans(part: Polygon, bottom: float, top: float) -> list[tuple[float, float]]:

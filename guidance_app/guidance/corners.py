@@ -40,6 +40,9 @@ RUN_OUT = 1.5
 SHORTEST_BACK = 1.0
 """Metres; nobody stops to back up by less."""
 
+TIP = 0.7
+"""Part of the working width, about its middle, that still finds unworked ground while it is worth backing on."""
+
 STEP = 0.25
 """Metres between the places where a side may begin."""
 
@@ -108,7 +111,10 @@ class CornerFinder:
         bars = shapely.linestrings(np.stack([rear - side, rear + side], axis=2))
         possible: BoolArray = np.asarray(shapely.covers(self._ground, bars))
         if self._unworked is not None:
-            possible &= shapely.intersects(self._unworked, bars)
+            inner = TIP * side
+            possible &= shapely.intersects(
+                self._unworked, shapely.linestrings(np.stack([rear - inner, rear + inner], axis=2))
+            )
         steps = np.where(possible.all(axis=1), len(metres), np.argmin(possible, axis=1))
         far = metres[np.maximum(steps - 1, 0)]
         best = int(np.argmax(2 * self._half_width * far - bends[:, 0] * far**3 / 6))

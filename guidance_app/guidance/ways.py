@@ -53,7 +53,7 @@ ROUNDS = 8
 SAME = 1e-3
 """Metres; nearer places are one."""
 
-OUT = (1.5, 3.0, 5.0, 8.0)
+OUT = (1.5, 3.0, 5.0, 8.0, 14.0)
 """Turning radii by which a tractor backs out of a dead end, or into one."""
 
 OUT_STEP = 0.5
@@ -88,13 +88,14 @@ class Ways:
         )
 
     def _backing_out(self, start: FloatArray, end: FloatArray) -> Turn | None:
-        """A way along the laps after backing out of a dead end, or before backing into one."""
+        """A turn, or a way along the laps, after backing out of a dead end, or before backing into one."""
         if not self._turner.reverse:
             return None
         out, into = self._dead_end(start, -1.0), self._dead_end(end, 1.0)
         for before, after in [*((0.0, metres) for metres in into), *((metres, 0.0) for metres in out)]:
             from_there, to_there = _moved(start, -before), _moved(end, after)
-            turn = self._along(self._tracks, from_there, to_there, np.inf)
+            turn = self._turner.plain(from_there[None], to_there[None])[0]
+            turn = turn or self._along(self._tracks, from_there, to_there, np.inf)
             if turn is not None:
                 return _between(start, turn, end, self._turner.out)
         return None
