@@ -5,6 +5,8 @@ The password goes from the page to the data folder and never back: what is kept 
 
 import threading
 import time
+from collections.abc import Mapping
+from typing import Any
 
 import viser
 
@@ -18,7 +20,7 @@ from guidance_app.model import CORRECTIONS
 from guidance_app.runtime import caster_of
 from guidance_app.sources import takes_corrections
 from guidance_app.sources.kept import LinkError
-from guidance_app.sources.ntrip import first_corrections
+from guidance_app.sources.ntrip import first_corrections, mount_points
 from guidance_app.store import StoreError
 from guidance_app.store.caster import caster_account, forget_caster_account, keep_caster_account
 from guidance_app.view.receiver import caster_words
@@ -28,6 +30,8 @@ __all__ = ["CorrectionsForm"]
 
 NOBODY = CasterAccount.model_construct()
 """What a form begins with."""
+ANY = "-"
+"""Stands for a mount point that is not chosen yet."""
 
 
 class CorrectionsForm:
@@ -39,6 +43,8 @@ class CorrectionsForm:
         self._kept: CasterAccount | None = None
         self._answer: tuple[str, Level] | None = None
         """Of the last press; until the next one it stands below the buttons."""
+        self._found: tuple[str, ...] = ()
+        self._chosen: str | None = None
         self._changing = threading.Lock()
         self._to_empty = False
         """Whether the password that was typed is kept now, and leaves the page."""
@@ -53,10 +59,18 @@ class CorrectionsForm:
             self._state = Shown(gui)
             initial = {**(self._kept or NOBODY).model_dump(), "password": ""}
             self._form = Form(gui, CasterAccount, initial, words, hands.house.settings().units, touched=hands.soon)
+            self._streams: Any = gui.add_dropdown(words("Mount points there"), ("",), visible=False)
+            press(gui, words("List its mount points"), lambda: hands.later(self._list))
             press(gui, words("Save the caster"), lambda: hands.later(self._save), "green")
             press(gui, words("Try it"), lambda: hands.later(self._try))
             self._forget_button = press(gui, words("Forget the caster"), lambda: hands.later(self._forget))
             self._said = Shown(gui)
+
+        @self._streams.on_update
+        async def _(event: viser.GuiEvent[viser.GuiDropdownHandle[str]]) -> None:
+            if event.client_id is not None and self._streams.value in self._found:
+                self._chosen = self._streams.value
+                hands.soon()
 
     def show(self, desk: Desk) -> None:
         """What comes from the caster, and what the last press has led to."""
@@ -65,11 +79,24 @@ class CorrectionsForm:
         if self._to_empty:
             self._to_empty = False
             self._form.set("password", "")
+        chosen, self._chosen = self._chosen, None
+        if chosen is not None:
+            self._form.set("mount", chosen)
+        self._offer()
         self._form.show(desk)
         self._state.show(_long_html(*self._state_words(desk)))
         self._forget_button.visible = self._kept is not None
         answer = self._answer
         self._said.show("" if answer is None else _long_html(self._words.say(answer[0]), answer[1]))
+
+    def _offer(self) -> None:
+        """The mount points that were found; a choice among the same ones stays."""
+        found = self._found
+        options = (self._words("choose one of {n}", n=len(found)), *found)
+        if found and tuple(self._streams.options) != options:
+            self._streams.options = options
+            self._streams.value = options[0]
+        self._streams.visible = bool(found)
 
     def _state_words(self, desk: Desk) -> tuple[str, Level]:
         words, kept, house = self._words, self._kept, self._hands.house
@@ -90,9 +117,9 @@ class CorrectionsForm:
 
     # --- pressed: on a worker ----------------------------------------------------------------------------------------
 
-    def _read(self) -> CasterAccount | None:
+    def _read(self, instead: Mapping[str, str] | None = None) -> CasterAccount | None:
         """What is typed; the kept password goes to nobody but the caster and user that it was kept for."""
-        typed = self._form.read()
+        typed = self._form.read(instead)
         kept = self._kept
         if typed is None or typed.password or kept is None or (typed.host, typed.user) != (kept.host, kept.user):
             return typed
@@ -129,6 +156,18 @@ class CorrectionsForm:
                 ),
                 "good",
             )
+
+    def _list(self) -> None:
+        account = self._read({"mount": ANY})
+        if account is None:
+            return
+        self._say(sentence("Asking {host} …", host=account.host), "fair")
+        try:
+            self._found = mount_points(caster_of(account))
+        except LinkError as error:
+            self._say(error.args[0], "bad")
+            return
+        self._say(sentence("Choose the mount point above."), "good")
 
     def _forget(self) -> None:
         if self._root is None:

@@ -10,7 +10,7 @@ import re
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from urllib.parse import quote, unquote, urlsplit
 
 from guidance_app.decode.nmea import xor_of
@@ -20,7 +20,16 @@ from guidance_app.sources import Source, SourceError, SourceEvent
 from guidance_app.sources.addresses import SocketConnection, dial
 from guidance_app.sources.kept import Kept, LinkError, Pauses
 
-__all__ = ["Caster", "Corrections", "Overheard", "Traffic", "caster_from_uri", "corrected", "first_corrections"]
+__all__ = [
+    "Caster",
+    "Corrections",
+    "Overheard",
+    "Traffic",
+    "caster_from_uri",
+    "corrected",
+    "first_corrections",
+    "mount_points",
+]
 
 PORT = 2101
 GGA_EVERY_S = 10.0
@@ -33,11 +42,14 @@ PAUSES = Pauses(first=2.0, longest=30.0)
 """Casters shut out those who come too often."""
 
 LONGEST_HEADER = 8192
+LONGEST_TABLE = 4_000_000
+"""Bytes; the world's largest casters name some thousand streams."""
 SHOWN = 80
 RULE = (
     "a caster is written as ntrip://user:password@host:2101/MOUNT, with %40 for @ and %3A for : in user and password."
 )
 
+_find_streams = re.compile(rb"(?m)^STR;([^;\r\n]{1,100});").findall
 _find_gga = re.compile(rb"\$([A-Z]{2})(GGA,[^*\r\n$]{20,100})\*([0-9A-Fa-f]{2})").findall
 
 
@@ -325,6 +337,30 @@ def first_corrections(caster: Caster, patience: float = TRY_S) -> int:
     finally:
         stream.close()
     return traffic.received
+
+
+def mount_points(caster: Caster, patience: float = TRY_S) -> tuple[str, ...]:
+    """The mount points that the caster's table names, sorted. Raises ``LinkError`` when there is no such table."""
+    deadline = time.monotonic() + patience
+    stop = threading.Event()
+    connection = SocketConnection(dial(caster.host, caster.port, stop), caster.host, SILENT_S)
+    seen = b""
+    try:
+        connection.write(_request(replace(caster, mount=""), b""))
+        while b"ENDSOURCETABLE" not in seen and time.monotonic() < deadline and len(seen) < LONGEST_TABLE:
+            seen += connection.read()
+    except LinkError:
+        if not seen:
+            raise
+    finally:
+        connection.close()
+    names = {name.decode("utf-8", "replace").strip() for name in _find_streams(seen)}
+    if not names:
+        _refuse(seen.partition(b"\r\n")[0].replace(b"SOURCETABLE", b"ICY"), caster)
+        raise LinkError(
+            sentence("the caster {host} names no mount points: write the one you were given", host=caster.host)
+        )
+    return tuple(sorted(names))
 
 
 class Overheard:

@@ -160,6 +160,18 @@ def test_a_caster_is_entered_tried_kept_and_corrects_the_next_drive(
     assert stored.house.corrections.received > 0
 
 
+def test_a_mount_point_is_chosen_from_those_that_the_caster_names(stored: SetupPlace, caster: LocalCaster) -> None:
+    fill_in(stored, caster, **{"Mount point": "", "Password": "wrong"})
+    stored.press("List its mount points")
+    stored.says("the caster 127.0.0.1 refuses user and password: check both")
+    fill_in(stored, caster, **{"Mount point": ""})
+    stored.press("List its mount points")
+    stored.says("Choose the mount point above")
+    stored.until(lambda: (one := stored.newest("Mount points there")) and "FAR" in one["props"]["options"])
+    stored.fill("Mount points there", MOUNT)
+    stored.until(lambda: stored.newest("Mount point")["value"] == MOUNT)
+
+
 def test_the_kept_password_is_never_shown_and_goes_to_no_other_caster(stored: SetupPlace, caster: LocalCaster) -> None:
     account = CasterAccount(host="127.0.0.1", port=caster.server.port, mount="OLD", user=USER, password=PASSWORD)
     keep_caster_account(stored.store.root, account)

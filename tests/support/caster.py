@@ -14,6 +14,7 @@ __all__ = ["FRAMES", "MOUNT", "PASSWORD", "USER", "LocalCaster", "local_caster"]
 USER, PASSWORD, MOUNT = "farmer@home", "s3cret:wörd", "NEAREST"
 FRAMES = tuple(b"\xd3\x00" + bytes([number]) * 40 for number in range(30))
 """What it sends: no real corrections, but bytes as binary as those."""
+TABLE = f"CAS;local;2101;Local;\r\nSTR;{MOUNT};Near;RTCM 3.2;\r\nSTR;FAR;Far;RTCM 3.2;\r\nNET;local;\r\n"
 AGAIN_S = 1.0
 
 
@@ -45,11 +46,8 @@ class LocalCaster:
             )
             return
         if f"GET /{MOUNT} ".encode() not in request:
-            connection.sendall(
-                b"SOURCETABLE 200 OK\r\nServer: local\r\n\r\nENDSOURCETABLE\r\n"
-                if self.version == 1
-                else b"HTTP/1.1 200 OK\r\nContent-Type: gnss/sourcetable\r\n\r\nENDSOURCETABLE\r\n"
-            )
+            head = "SOURCETABLE 200 OK" if self.version == 1 else "HTTP/1.1 200 OK\r\nContent-Type: gnss/sourcetable"
+            self._send_cut(connection, f"{head}\r\n\r\n{TABLE}ENDSOURCETABLE\r\n".encode())
             return
         self._send(connection)
         self._hear(connection)

@@ -20,7 +20,7 @@ from guidance_app.model import CORRECTIONS, LinkState, LinkStatus
 from guidance_app.runtime import SessionManager, caster_for, caster_of
 from guidance_app.sources import SourceError, open_receiver, takes_corrections
 from guidance_app.sources.kept import LinkError
-from guidance_app.sources.ntrip import Traffic, first_corrections
+from guidance_app.sources.ntrip import Traffic, first_corrections, mount_points
 from guidance_app.store import Store, StoreError
 from guidance_app.store.backup import restore, write_backup
 from guidance_app.store.caster import ACCOUNT, caster_account, forget_caster_account, keep_caster_account
@@ -172,6 +172,31 @@ def test_a_try_says_what_came_or_why_nothing_did(version: int) -> None:
             first_corrections(caster_of(an_account(port, mount="ELSEWHERE")))
     with pytest.raises(LinkError, match="nothing answers at its port"):
         first_corrections(caster_of(an_account(port)))
+
+
+@pytest.mark.parametrize("version", [1, 2])
+@pytest.mark.parametrize("cut", [7, 1000])
+def test_a_caster_tells_its_mount_points(version: int, cut: int) -> None:
+    with local_caster(version, cut=cut) as caster:
+        assert mount_points(caster_of(an_account(caster.server.port))) == ("FAR", MOUNT)
+        with pytest.raises(LinkError, match="refuses user and password"):
+            mount_points(caster_of(an_account(caster.server.port, password="wrong")))
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (b"SOURCETABLE 200 OK\r\n\r\nENDSOURCETABLE\r\n", "names no mount points: write the one"),
+        (b"HTTP/1.1 503 Full\r\n\r\n", "refuses: HTTP/1.1 503 Full"),
+        (b"", "has closed the connection"),
+    ],
+)
+def test_a_caster_without_a_table_is_said(answer: bytes, words: str) -> None:
+    with (
+        server(lambda connection, _: (connection.recv(4096), connection.sendall(answer))) as other,
+        pytest.raises(LinkError, match=words),
+    ):
+        mount_points(caster_of(an_account(other.port)))
 
 
 def test_a_caster_that_waits_for_a_position_has_sent_nothing() -> None:
