@@ -276,7 +276,8 @@ class Tracker:
         """Goes on along a plan of the rest of the same field, as ``replan`` makes it.
 
         Offsets and all that is done stay. The pass on which the implement works stays the target, in the direction in
-        which it is driven; otherwise the plan's first one becomes it. ``ValueError`` for a plan without a pass.
+        which it is driven, unless the driver has turned it round: then the plan leads to its other end.
+        Otherwise the plan's first one becomes it. ``ValueError`` for a plan without a pass.
         """
         itinerary = PlanItinerary.of(plan).shifted(self._offsets.total)
         old, number = self._line, None if self._line is None else self._line.target.number
@@ -286,10 +287,11 @@ class Tracker:
         self._next = self._done = self._line = None
         here = next(iter(keys_of(itinerary, [] if number is None else [number])), None)
         first = itinerary.start(0.0, 0.0, self._progress.done)
-        if old is not None and here is not None and (self._choice.engaged or here == first):
+        turned = self._travel.wished and here == first
+        if old is not None and here is not None and not turned and (self._choice.engaged or here == first):
             self._stay(old, itinerary, here)
         elif first is not None:
-            self._go_to(first)
+            self._go_to(first, held=turned)
 
     def _stay(self, old: GuideLine, itinerary: Itinerary, key: int) -> None:
         """On along the same pass, which may be shorter now, or planned the other way round."""

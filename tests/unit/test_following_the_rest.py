@@ -123,6 +123,12 @@ def test_turned_round_on_a_half_worked_pass_its_rest_is_worked_from_the_other_en
     first, last = (begun.points[0], begun.points[-1])[:: 1 if times == 1 else -1]
     assert math.dist(first, end) < MILLIMETRE
     assert math.dist(last, here) < MILLIMETRE
+    if times == 1:
+        guidance = tracker.step(pose, (pose.east, pose.north), working=False)
+        assert guidance is not None
+        assert not guidance.on_pass
+        assert guidance.turn is not None
+        assert guidance.turn.driven
 
 
 def test_after_a_crash_a_new_tracker_knows_what_is_done() -> None:
