@@ -89,6 +89,9 @@ class Joiner:
         poses, along = lap.poses(LAP_STEP, LAP_SIDE * self._turner.radius, self._turner.out)
         if not len(along):
             return side_tasks(lap, 0.0, number, None)
+        fits = self._turner.room.fits_each(poses)
+        if fits.any():
+            poses, along = poses[fits], along[fits]
         order = np.argsort(np.hypot(*(poses[:, :2] - last[:2]).T))[:LAP_PLACES]
         if len(last) == PLACE:
             return side_tasks(lap, float(along[order[0]]), number, None)

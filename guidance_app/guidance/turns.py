@@ -8,6 +8,7 @@ with the metres that are missing, on a path that itself stays inside.
 
 import copy
 import itertools
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from guidance_app.guidance.room import Room
 from guidance_app.guidance.turn import Turn, turns_along
 from guidance_app.model import FloatArray
 
-__all__ = ["Turner"]
+__all__ = ["Turner", "ahead"]
 
 RADIUS_MARGIN = 1.0055
 """Turns are laid on a circle wider by this: then even their longest chords bend no more than the turning radius."""
@@ -77,18 +78,28 @@ class Turner:
         kinds = [self._backing(starts, ends), self._backward(starts, ends)]
         return self._shortest(stacked(kinds, len(starts)), len(starts))
 
-    def onto(self, start: FloatArray, ends: FloatArray) -> Manoeuvres:
-        """Candidates from a worked pass's end to each of many poses (M, 3) on the way."""
+    def onto(self, start: FloatArray, ends: FloatArray, back: float = 0.0) -> Manoeuvres:
+        """Candidates from a worked pass's end, or from ``back`` metres before it, to each of many poses (M, 3)."""
         many = np.tile(start, (len(ends), 1))
-        words = self._join(_ahead(many, self.out), ends)
-        return self._framed(words, 0.0)
-
-    def off(self, starts: FloatArray, end: FloatArray) -> Manoeuvres:
-        """Candidates from each of many poses (M, 3) on the way to the start of a pass."""
-        many = np.tile(end, (len(starts), 1))
-        words = self._join(starts, _ahead(many, -self.into))
+        words = self._join(ahead(many, self.out - back), ends)
         rows = len(words.start)
-        return with_straights(words, np.zeros((rows, 1)), np.full((rows, 1), self.into))
+        return with_straights(words, np.tile([self.out, -back], (rows, 1)), np.zeros((rows, 2)))
+
+    def off(self, starts: FloatArray, end: FloatArray, over: float = 0.0) -> Manoeuvres:
+        """Candidates from each of many poses (M, 3) to the start of a pass, or ``over`` metres on and back to it."""
+        many = np.tile(end, (len(starts), 1))
+        words = self._join(starts, ahead(many, over or -self.into))
+        rows = len(words.start)
+        after = [0.0, -over] if over else [self.into, 0.0]
+        return with_straights(words, np.zeros((rows, 1)), np.tile(after, (rows, 1)))
+
+    def straight(self, pose: FloatArray, metres: Sequence[float]) -> int:
+        """How many of these ways straight on, or back where negative, fit; from the first to one that does not."""
+        rows = len(metres)
+        moves = Manoeuvres(
+            np.tile(pose, (rows, 1)), np.zeros((rows, 1)), np.array(metres, dtype=float)[:, None], self.radius
+        )
+        return int(np.argmin(np.append(self.room.fits(moves), False)))
 
     def within(self, room: Room) -> "Turner":
         """The same machine in another room."""
@@ -120,7 +131,7 @@ class Turner:
         return max(SMALLEST_MISSING, float(worst.min(initial=self.radius)))
 
     def _plain(self, starts: FloatArray, ends: FloatArray) -> Manoeuvres:
-        words = self._join(_ahead(starts, self.out), _ahead(ends, -self.into))
+        words = self._join(ahead(starts, self.out), ahead(ends, -self.into))
         return self._framed(words, self.into)
 
     def _join(self, starts: FloatArray, ends: FloatArray) -> Manoeuvres:
@@ -134,8 +145,8 @@ class Turner:
         metres = [0.0, *(part * self.radius for part in BACKING)]
         both = np.array([(first, last) for first, last in itertools.product(metres, metres) if first or last])
         first, last = np.tile(both, (len(starts), 1)).T
-        begin = _ahead(np.repeat(starts, len(both), axis=0), self.out - first)
-        end = _ahead(np.repeat(ends, len(both), axis=0), np.where(last > 0, last, -self.into))
+        begin = ahead(np.repeat(starts, len(both), axis=0), self.out - first)
+        end = ahead(np.repeat(ends, len(both), axis=0), np.where(last > 0, last, -self.into))
         words = self._join(begin, end)
         first, last = np.repeat(first, WORDS), np.repeat(last, WORDS)
         before = np.column_stack([np.full(len(first), self.out), -first])
@@ -143,7 +154,7 @@ class Turner:
         return with_straights(words, before, after)
 
     def _backward(self, starts: FloatArray, ends: FloatArray) -> Manoeuvres:
-        words = backed(_ahead(starts, self.out), ends, self.radius)
+        words = backed(ahead(starts, self.out), ends, self.radius)
         bent = np.abs(words.lengths * words.turns).sum(axis=1)
         words.lengths[bent > MOST_BENT_BACK * self.radius] = np.nan
         return self._framed(words, 0.0)
@@ -174,7 +185,7 @@ class Turner:
         return found
 
 
-def _ahead(poses: FloatArray, metres: float | FloatArray) -> FloatArray:
+def ahead(poses: FloatArray, metres: float | FloatArray) -> FloatArray:
     """Poses (M, 3) so many metres ahead: the same for all, or (M,)."""
     moved = poses.copy()
     moved[:, 0] += metres * np.cos(poses[:, 2])

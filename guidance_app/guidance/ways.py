@@ -2,11 +2,10 @@
 
 A transfer leaves its pass, joins a lap's line in either direction, follows it, and leaves it for the next pass. The
 straight way over the mainland is taken only where it is much shorter, since it runs over the crop. Where no lap leads
-there, a taut string does: through the gap that a lap is too wide for. Where nothing fits, the transfer is drawn as the
-shortest path inside and flagged.
+there, a taut string does: through the gap that a lap is too wide for. A dead end is left, or reached, backward along
+the pass. Where nothing fits, the transfer is drawn as the shortest path inside and flagged.
 """
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -20,7 +19,7 @@ from guidance_app.guidance.manoeuvres import WORDS, IntArray, Manoeuvres
 from guidance_app.guidance.ring import Ring, Stroke
 from guidance_app.guidance.room import BoolArray
 from guidance_app.guidance.turn import Leg, Turn, leg_of, turns_along
-from guidance_app.guidance.turns import Turner
+from guidance_app.guidance.turns import Turner, ahead
 from guidance_app.model import FloatArray
 
 __all__ = ["Ways"]
@@ -50,14 +49,11 @@ ROUNDS = 8
 """Batches after which a transfer counts as one that does not fit."""
 
 
-SAME = 1e-3
-"""Metres; nearer places are one."""
+LOOKS = 3
+"""Batches after which a place is one that no lap can be joined or left from."""
 
-OUT = (1.5, 3.0, 5.0, 8.0, 14.0)
-"""Turning radii by which a tractor backs out of a dead end, or into one."""
-
-OUT_STEP = 0.5
-"""Metres between the places at which the way out of a dead end is tried."""
+BACK_OUT = (0.0, 3.0, 8.0, 20.0)
+"""Turning radii that a tractor backs up along a pass out of a dead end, or into one."""
 
 
 class Ways:
@@ -81,32 +77,11 @@ class Ways:
         return (
             self._along(self._tracks, start, end, cost)
             or direct
-            or self._backing_out(start, end)
             or self._pulled(start, end)
             or self._turner.awkward(*pair)[0]
+            or self._backed(start, end)
             or self._flagged(start, end)
         )
-
-    def _backing_out(self, start: FloatArray, end: FloatArray) -> Turn | None:
-        """A turn, or a way along the laps, after backing out of a dead end, or before backing into one."""
-        if not self._turner.reverse:
-            return None
-        out, into = self._dead_end(start, -1.0), self._dead_end(end, 1.0)
-        for before, after in [*((0.0, metres) for metres in into), *((metres, 0.0) for metres in out)]:
-            from_there, to_there = _moved(start, -before), _moved(end, after)
-            turn = self._turner.plain(from_there[None], to_there[None])[0]
-            turn = turn or self._along(self._tracks, from_there, to_there, np.inf)
-            if turn is not None:
-                return _between(start, turn, end, self._turner.out)
-        return None
-
-    def _dead_end(self, pose: FloatArray, sense: float) -> list[float]:
-        """Metres along the line through a pose, ahead or behind, to where the machine may come without turning."""
-        metres = np.arange(0.0, OUT[-1] * self._turner.radius, OUT_STEP)
-        line = np.array([_moved(pose, sense * each) for each in metres])
-        fits = self._turner.room.fits_each(line)
-        free = metres[-1] if fits.all() else metres[max(0, int(np.argmin(fits)) - 1)]
-        return [part * self._turner.radius for part in OUT if part * self._turner.radius <= free]
 
     def _cost(self, turn: Turn) -> float:
         if self._mainland is None:
@@ -127,6 +102,18 @@ class Ways:
                     return turn
         return None
 
+    def _backed(self, start: FloatArray, end: FloatArray) -> Turn | None:
+        """A way out of a dead end, into one, or both, backward along the pass to where a lap can be joined or left."""
+        if not self._turner.reverse:
+            return None
+        out, over = self._tracks.backing_out(start), self._tracks.backing_in(end)
+        if out is None or over is None:
+            return None
+        some = BACK_OUT[1] * self._turner.radius
+        pairs = [(out, over)] if out or over else [(0.0, some), (some, 0.0)]
+        turns = (self._along(self._tracks, start, end, np.inf, pair) for pair in pairs)
+        return next((turn for turn in turns if turn is not None), None)
+
     def _flagged(self, start: FloatArray, end: FloatArray) -> Turn:
         string = self._prepared()[1].path(start[:2], end[:2])
         assert string is not None, "the field is in one piece"
@@ -145,10 +132,20 @@ class Ways:
             self._corridors = ([Corridor(part) for part in parts_of(simple)], Corridor(whole))
         return self._corridors
 
-    def _along(self, tracks: "_Tracks", start: FloatArray, end: FloatArray, limit: float) -> Turn | None:
-        """The shortest way on one of these lines that fits and costs less than ``limit``."""
-        joins, onto = tracks.joining(start)
-        leaves, off = tracks.leaving(end)
+    def _along(
+        self,
+        tracks: "_Tracks",
+        start: FloatArray,
+        end: FloatArray,
+        limit: float,
+        back: tuple[float, float] = (0.0, 0.0),
+    ) -> Turn | None:
+        """The shortest way on one of these lines that fits and costs less than ``limit``.
+
+        The tractor first backs up along its pass, or overruns the next pass's start and backs up to it, so far.
+        """
+        joins, onto = tracks.joining(start, back[0])
+        leaves, off = tracks.leaving(end, back[1])
         if not len(joins) or not len(leaves):
             return None
         between = tracks.between(joins, leaves)
@@ -198,6 +195,14 @@ class _Side:
         self._open[places, words] = np.inf
         self._promise()
 
+    def leads_on(self) -> bool:
+        """Whether anything fits at any place."""
+        for _ in range(LOOKS):
+            if np.isfinite(self.certain).any():
+                return True
+            self.check(np.zeros((len(self.certain), 1)), np.inf)
+        return bool(np.isfinite(self.certain).any())
+
     def turn(self, place: int) -> Turn:
         """The turn of the best candidate that fits there."""
         return turns_along(self._moves.take(self._fitting[place : place + 1]))[0]
@@ -211,8 +216,9 @@ class _Tracks:
 
     def __init__(self, turner: Turner, lines: Sequence[Ring | Stroke]) -> None:
         self._turner = turner
-        self._joining: dict[bytes, tuple[IntArray, _Side]] = {}
-        self._leaving: dict[bytes, tuple[IntArray, _Side]] = {}
+        self._joining: dict[tuple[bytes, float], tuple[IntArray, _Side]] = {}
+        self._leaving: dict[tuple[bytes, float], tuple[IntArray, _Side]] = {}
+        self._backings = [part * turner.radius for part in BACK_OUT]
         self._rings = lines
         along = [ring.places(TRACK_STEP) for ring in self._rings]
         self._along = np.concatenate([*along, np.zeros(0)])
@@ -223,21 +229,33 @@ class _Tracks:
         self._blocked = np.concatenate([[0], np.cumsum(~self._free)])
         self._period = np.array([ring.period for ring in self._rings])
 
-    def joining(self, start: FloatArray) -> tuple[IntArray, _Side]:
+    def joining(self, start: FloatArray, back: float = 0.0) -> tuple[IntArray, _Side]:
         """Rows of poses within reach of a worked pass's end, and the candidates that lead there; kept between calls."""
-        key = start.tobytes()
+        key = start.tobytes(), back
         if key not in self._joining:
-            rows = self._near(start)
-            self._joining[key] = rows, _Side(self._turner, self._turner.onto(start, self.poses[rows]), len(rows))
+            rows = self._near(ahead(start[None], -back)[0])
+            moves = self._turner.onto(start, self.poses[rows], back)
+            self._joining[key] = rows, _Side(self._turner, moves, len(rows))
         return self._joining[key]
 
-    def leaving(self, end: FloatArray) -> tuple[IntArray, _Side]:
+    def leaving(self, end: FloatArray, over: float = 0.0) -> tuple[IntArray, _Side]:
         """The same towards the start of a pass."""
-        key = end.tobytes()
+        key = end.tobytes(), over
         if key not in self._leaving:
-            rows = self._near(end)
-            self._leaving[key] = rows, _Side(self._turner, self._turner.off(self.poses[rows], end), len(rows))
+            rows = self._near(ahead(end[None], over)[0])
+            moves = self._turner.off(self.poses[rows], end, over)
+            self._leaving[key] = rows, _Side(self._turner, moves, len(rows))
         return self._leaving[key]
+
+    def backing_out(self, start: FloatArray) -> float | None:
+        """The least metres to back up from a pass's end so that a lap can be joined; None where that never helps."""
+        free = self._turner.straight(start, [-back for back in self._backings])
+        return next((back for back in self._backings[:free] if self.joining(start, back)[1].leads_on()), None)
+
+    def backing_in(self, end: FloatArray) -> float | None:
+        """The least metres to overrun a pass's start, and back up to it, after leaving a lap."""
+        free = self._turner.straight(end, self._backings)
+        return next((over for over in self._backings[:free] if self.leaving(end, over)[1].leads_on()), None)
 
     def _near(self, pose: FloatArray) -> IntArray:
         """Rows of poses within reach at which the machine fits."""
@@ -267,23 +285,6 @@ class _Tracks:
             return self.poses[join : join + 1, :2]
         points: FloatArray = ring.stretch(float(self._along[join]), float(self._along[leave]))
         return points
-
-
-def _moved(pose: FloatArray, metres: float) -> FloatArray:
-    """The pose so many metres ahead."""
-    return pose + metres * np.array([np.cos(pose[2]), np.sin(pose[2]), 0.0])
-
-
-def _between(start: FloatArray, turn: Turn, end: FloatArray, out: float) -> Turn:
-    """The turn with straight legs before and after it where it does not begin at ``start`` or end at ``end``."""
-    legs = list(turn.legs)
-    if math.dist(start[:2], legs[0].points[0]) > out + SAME:
-        run_out = _moved(start, out)[:2]
-        before = [leg_of(np.stack([start[:2], run_out]), reverse=False)] if out else []
-        legs[:0] = [*before, leg_of(np.stack([run_out, legs[0].points[0]]), reverse=True)]
-    if math.dist(end[:2], legs[-1].points[-1]) > SAME:
-        legs.append(leg_of(np.stack([legs[-1].points[-1], end[:2]]), reverse=True))
-    return Turn(tuple(legs), sum(leg.length for leg in legs), transfer=True)
 
 
 def _chained(onto: Turn, ridden: FloatArray, off: Turn) -> Turn:

@@ -165,3 +165,15 @@ def test_laps_follow_each_other_without_backing_up_wherever_they_begin(
     )
     plan = plan_operation(shapely.box(0.0, 0.0, 68.0, 67.0), request)
     assert all(each.fits for each in plan.segments)
+
+
+@pytest.mark.parametrize("length", [40.0, 80.0])
+def test_a_dead_end_is_left_backward(length: float) -> None:
+    tongue = shapely.box(99.0, 40.0, 100.0 + length, 47.0)
+    field = shapely.Polygon(shapely.union_all([shapely.box(0.0, 0.0, 100.0, 90.0), tongue]).exterior)
+    plan = plan_operation(field, PlanRequest(width=6.0, radius=5.0))
+    assert all(each.fits for each in plan.segments)
+    assert max(each.length for each in plan.segments if each.reverse) > length
+    assert plan.costs.worked_fraction > 0.985
+    forward = plan_operation(field, PlanRequest(width=6.0, radius=5.0, reverse_allowed=False))
+    assert not all(each.fits for each in forward.segments) or forward.costs.worked_fraction < plan.costs.worked_fraction
