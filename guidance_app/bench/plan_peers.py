@@ -1,8 +1,9 @@
 """Other planners beside ours, where their wheels are installed (the extra ``peers``).
 
 ``coverage-path-planner`` (C++, mowing robots) knows no turning radius: it pivots. ``covplan`` (Hameed et al. 2013)
-turns on Dubins curves and never works the headland. Fields2Cover has no wheel; its figures are those of the literature
-row in ``plan``.
+turns on Dubins curves and never works the headland. Fields2Cover 2.1.0 has no wheel, and its source distribution does
+not build by itself: while it is built it fetches OR-Tools 9.9, steering_functions and Matplot++ from where they are
+developed, and no package of the three stands in for them. Its figures are those of the literature row in ``plan``.
 """
 
 import contextlib

@@ -5,7 +5,7 @@ import shapely
 from shapely import Polygon
 
 from guidance_app.guidance.clearance import parts_of
-from guidance_app.guidance.request import PlanError, PlanRequest
+from guidance_app.guidance.request import PlanError, PlanRequest, driven_over
 from guidance_app.language import sentence
 
 __all__ = ["SMALLEST_FIELD", "ground_of"]
@@ -32,7 +32,7 @@ def ground_of(polygon: Polygon, request: PlanRequest) -> Polygon:
     if not (np.isfinite(corners).all() and np.abs(corners).max() < WIDEST):
         msg = sentence("the field's boundary has a corner that is not a place in the field")
         raise PlanError(msg)
-    over = range(len(polygon.interiors)) if request.over_exclusions else request.passable
+    over = driven_over(len(polygon.interiors), request.passable, all_of_them=request.over_exclusions)
     holes = [ring for place, ring in enumerate(polygon.interiors) if place not in over]
     ground = _largest(Polygon(polygon.exterior, holes))
     smooth = shapely.simplify(ground, VERTEX_TOLERANCE)

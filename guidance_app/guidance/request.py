@@ -15,7 +15,7 @@ from typing import Literal
 from guidance_app.documents import Direction, Method
 from guidance_app.language import message, sentence
 
-__all__ = ["Body", "LastPass", "PlanError", "PlanRequest", "StartCorner"]
+__all__ = ["Body", "LastPass", "PlanError", "PlanRequest", "StartCorner", "driven_over"]
 
 FRONT_OVERHANG = 0.8
 """Metres of bonnet or weights ahead of the front axle."""
@@ -190,6 +190,11 @@ _BOUNDS = (
     ("turn_speed", 0.05, 20.0),
     ("stop_s", 0.0, 60.0),
 )
+
+
+def driven_over(holes: int, passable: frozenset[int], *, all_of_them: bool) -> frozenset[int]:
+    """The numbers, from 0, of the holes of a field that are driven and worked over."""
+    return frozenset(range(holes)) if all_of_them else passable
 
 
 PARTS: Mapping[str, str] = {

@@ -21,7 +21,7 @@ from guidance_app.documents import (
     Tractor,
 )
 from guidance_app.geodesy import FieldFrame
-from guidance_app.guidance.request import LastPass, PlanError, PlanRequest
+from guidance_app.guidance.request import LastPass, PlanError, PlanRequest, driven_over
 from guidance_app.language import sentence
 
 __all__ = ["Places", "edge_place", "exclusions_with", "line_places", "request_from_documents", "request_of"]
@@ -116,9 +116,8 @@ def _chosen(operation: Operation, start: _Place | None) -> dict[str, Any]:
 
 def _places(field: FieldDocument, operation: Operation, frame: FieldFrame, start: _Place | None) -> Places:
     line = edge = None
-    over = exclusions_with(field, operation.passable)
-    if operation.over_exclusions:
-        over = frozenset(range(len(field.boundary.coordinates) - 1))
+    holes = len(field.boundary.coordinates) - 1
+    over = driven_over(holes, exclusions_with(field, operation.passable), all_of_them=operation.over_exclusions)
     if operation.direction is Direction.LINE:
         line = line_places(field, operation.guidance_line, frame)
     if operation.direction is Direction.EDGE and operation.edge_at is not None:
