@@ -9,6 +9,7 @@ from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from guidance_app.guidance.request import PlanRequest
+from guidance_app.guidance.swaths import unworked
 from guidance_app.model import PlanCosts, Segment, SegmentKind
 
 __all__ = ["costs_of", "driven_costs", "joins_of"]
@@ -18,7 +19,7 @@ def costs_of(
     segments: Sequence[Segment], ground: Polygon, worked: BaseGeometry, swaths_area: float, request: PlanRequest
 ) -> PlanCosts:
     """Sums over the segments, and areas; ``worked`` is the union of the swaths, ``swaths_area`` the sum of theirs."""
-    inside = worked.intersection(ground).area
+    inside = ground.area - unworked(ground, worked).area
     areas = PlanCosts(
         work_m=0.0,
         idle_m=0.0,

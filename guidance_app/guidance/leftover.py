@@ -17,6 +17,7 @@ from guidance_app.guidance.cells import Strips
 from guidance_app.guidance.clearance import parts_of
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.guidance.room import Room
+from guidance_app.guidance.swaths import unworked
 from guidance_app.model import FloatArray
 
 __all__ = ["leftovers"]
@@ -48,7 +49,7 @@ def leftovers(
 ) -> list[Bundle]:
     """Strips for every leftover that is worth working and has room for the machine, along ``heading`` if given."""
     sliver = SLIVER * request.width
-    rest = ground.difference(worked).buffer(-sliver, join_style="mitre").buffer(sliver, join_style="mitre")
+    rest = unworked(ground, worked).buffer(-sliver, join_style="mitre").buffer(sliver, join_style="mitre")
     smallest = max(request.width * max(SMALLEST * request.width, request.radius), NEGLIGIBLE * ground.area)
     found = (_strips(part, room, request, heading) for part in parts_of(rest, smallest))
     return [each for each in found if each.lines]

@@ -18,6 +18,7 @@ from guidance_app.guidance.pattern import OperationMethod, PatternOptions
 from guidance_app.guidance.patterns import METHODS
 from guidance_app.guidance.request import PlanError, PlanRequest
 from guidance_app.guidance.room import Room
+from guidance_app.guidance.swaths import unworked
 from guidance_app.guidance.task import Task
 from guidance_app.guidance.turn import Turn
 from guidance_app.guidance.turns import Turner
@@ -160,7 +161,7 @@ def _warnings(segments: Sequence[Segment], layout: Layout, request: PlanRequest)
         warnings.append(
             many if len(unfit) > 1 else sentence("One turn does not fit; it lacks {worst:.1f} m.", worst=worst)
         )
-    missed = 1 - layout.worked.intersection(layout.ground).area / layout.ground.area
+    missed = unworked(layout.ground, layout.worked).area / layout.ground.area
     if missed > UNWORKED:
         warnings.append(
             sentence(

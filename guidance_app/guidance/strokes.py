@@ -19,6 +19,7 @@ from guidance_app.guidance.bundle import Bundle
 from guidance_app.guidance.clearance import parts_of
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.guidance.room import BoolArray, Room
+from guidance_app.guidance.swaths import unworked
 from guidance_app.model import FloatArray
 
 __all__ = ["strokes"]
@@ -65,7 +66,7 @@ EITHER_WAY = 0.9
 def strokes(ground: Polygon, worked: BaseGeometry, room: Room, request: PlanRequest) -> list[Bundle]:
     """Strokes for all that is left and worth one, each a bundle of its own."""
     sliver = SLIVER * request.width
-    rest = ground.difference(worked).buffer(-sliver, join_style="mitre").buffer(sliver, join_style="mitre")
+    rest = unworked(ground, worked).buffer(-sliver, join_style="mitre").buffer(sliver, join_style="mitre")
     worth = _worth(ground, request)
     found: list[Bundle] = []
     swaths: list[BaseGeometry] = []

@@ -11,7 +11,10 @@ from shapely.geometry.base import BaseGeometry
 
 from guidance_app.guidance.task import Task
 
-__all__ = ["swath", "united"]
+__all__ = ["swath", "united", "unworked"]
+
+GRID = 1e-4
+"""Metres to which corners are snapped where ground is taken from ground; without it GEOS fails on some swaths."""
 
 FLAT = 0.01
 """Metres to which a lap's line is smoothed before its swath is made: a union takes the longer the more points."""
@@ -33,3 +36,10 @@ def united(swaths: Sequence[BaseGeometry]) -> BaseGeometry:
     together = shapely.buffer(shapely.multipolygons(shapely.get_parts(list(swaths))), 0.0)
     assert isinstance(together, BaseGeometry)
     return together
+
+
+def unworked(ground: BaseGeometry, worked: BaseGeometry) -> BaseGeometry:
+    """The ground that is left."""
+    left = shapely.difference(ground, worked, grid_size=GRID)
+    assert isinstance(left, BaseGeometry)
+    return left
