@@ -38,6 +38,7 @@ def test_plans_are_compared_shown_and_taken(server: viser.ViserServer, tmp_path:
         place.press("Compare plans")
         place.until(lambda: place.newest("Stop"))
         place.until(lambda: place.newest("Compare plans") and "in laps" in place.client.words())
+        place.says(r"\d+ plans\. The best: ")
         place.says("g-best")
         assert in_the_tab_of(place, "row 1", "Compare plans")
         last = max(rows_of(place))

@@ -217,13 +217,12 @@ class Plan:
         words = self._words
         if best is None:
             return [words("Planning …")] if self._search is not None and self._search.running else []
+        made = len(shown)
+        if made < count:
+            found = message("{made} of {count} plans. Best so far: {title}, {where}.")
+        else:
+            found = message("{count} plans. The best: {title}, {where}.")
         return [
-            words(
-                "{made} of {count} plans. Best so far: {title}, {where}.",
-                made=len(shown),
-                count=count,
-                title=best.title,
-                where=best.where,
-            ),
+            words(found, made=made, count=count, title=best.title, where=best.where),
             words("Press a row to see it on the map, and once more to take it."),
         ]
