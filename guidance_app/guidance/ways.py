@@ -6,6 +6,7 @@ there, a taut string does: through the gap that a lap is too wide for. A dead en
 the pass. Where nothing fits, the transfer is drawn as the shortest path inside and flagged.
 """
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -56,6 +57,13 @@ BACK_OUT = (0.0, 3.0, 8.0, 20.0)
 """Turning radii that a tractor backs up along a pass out of a dead end, or into one."""
 
 
+FAR_OUT = (1.5, 3.0, 5.0, 8.0, 14.0, 24.0)
+"""Turning radii that a tractor backs up to where it can turn, if no lap is near."""
+
+SAME = 1e-3
+"""Metres; nearer places are one."""
+
+
 class Ways:
     """Finds the way between any two poses of one field."""
 
@@ -80,6 +88,7 @@ class Ways:
             or self._pulled(start, end)
             or self._turner.awkward(*pair)[0]
             or self._backed(start, end)
+            or self._turned_outside(start, end)
             or self._flagged(start, end)
         )
 
@@ -113,6 +122,20 @@ class Ways:
         pairs = [(out, over)] if out or over else [(0.0, some), (some, 0.0)]
         turns = (self._along(self._tracks, start, end, np.inf, pair) for pair in pairs)
         return next((turn for turn in turns if turn is not None), None)
+
+    def _turned_outside(self, start: FloatArray, end: FloatArray) -> Turn | None:
+        """A turn after backing out of a dead end, or before backing into one, where no lap is near."""
+        if not self._turner.reverse:
+            return None
+        metres = [part * self._turner.radius for part in FAR_OUT]
+        out = metres[: self._turner.straight(start, [-each for each in metres])]
+        over = metres[: self._turner.straight(end, metres)]
+        for back, beyond in [*((0.0, each) for each in over), *((each, 0.0) for each in out)]:
+            begin, goal = ahead(start[None], -back), ahead(end[None], beyond)
+            turn = self._turner.plain(begin, goal)[0]
+            if turn is not None:
+                return _framed(start, turn, end, self._turner.out)
+        return None
 
     def _flagged(self, start: FloatArray, end: FloatArray) -> Turn:
         string = self._prepared()[1].path(start[:2], end[:2])
@@ -285,6 +308,18 @@ class _Tracks:
             return self.poses[join : join + 1, :2]
         points: FloatArray = ring.stretch(float(self._along[join]), float(self._along[leave]))
         return points
+
+
+def _framed(start: FloatArray, turn: Turn, end: FloatArray, out: float) -> Turn:
+    """The turn with straight legs before and after it where it does not begin at ``start`` or end at ``end``."""
+    legs = list(turn.legs)
+    if math.dist(start[:2], legs[0].points[0]) > SAME:
+        run_out = ahead(start[None], out)[0, :2]
+        before = [leg_of(np.stack([start[:2], run_out]), reverse=False)] if out else []
+        legs[:0] = [*before, leg_of(np.stack([run_out, legs[0].points[0]]), reverse=True)]
+    if math.dist(end[:2], legs[-1].points[-1]) > SAME:
+        legs.append(leg_of(np.stack([legs[-1].points[-1], end[:2]]), reverse=True))
+    return Turn(tuple(legs), sum(leg.length for leg in legs), transfer=True)
 
 
 def _chained(onto: Turn, ridden: FloatArray, off: Turn) -> Turn:
