@@ -88,12 +88,13 @@ const sayWords = (known, style) => {
 };
 
 // --- alarms: one for a change for the worse, never two within ten seconds ---
+const STEERED_BY = ["guide", "across"];
 let lastAlarm = -ALARM_GAP;
 let lastLevel = "far";
 
 const alarm = (before, sounds) => {
   const level = shared.state === "guide" ? (shared.message.u?.[2] ?? "far") : lastLevel;
-  const lost = before === "guide" && !["guide", "measuring", "finished"].includes(shared.state);
+  const lost = STEERED_BY.includes(before) && ![...STEERED_BY, "measuring", "finished"].includes(shared.state);
   const turning = level === "now" && lastLevel !== "now";
   lastLevel = level;
   if (!sounds || !(lost || turning) || performance.now() - lastAlarm < ALARM_GAP) return;

@@ -2,6 +2,7 @@
 
 import functools
 import itertools
+import math
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -15,6 +16,7 @@ from support.consoles import PlainScreen, live_socket, running_console
 from support.sessions import HandSession, driven, driving
 
 from guidance_app.console.server import Console
+from guidance_app.documents import Settings
 from guidance_app.model import LinkState, LinkStatus, Snapshot, TurnGuide
 
 pytestmark = pytest.mark.browser
@@ -24,6 +26,11 @@ LEAST_DIGIT_PX = 40
 Make = Callable[[float, int], Snapshot]
 
 
+def driving_on(now: float, sequence: int) -> Snapshot:
+    """Along the line."""
+    return driving(at=now, sequence=sequence)
+
+
 class Drive:
     """A running console and the hand that writes its snapshots; ``make`` may be replaced while it runs."""
 
@@ -31,7 +38,7 @@ class Drive:
         self.console = console
         self.session = session
         self.asked: list[str] = []
-        self.make: Make = lambda now, sequence: driving(at=now, sequence=sequence)
+        self.make: Make = driving_on
 
     def next(self, now: float, sequence: int) -> Snapshot:
         return self.make(now, sequence)
@@ -64,7 +71,7 @@ def shared_page(drive: Drive, open_shared_page: OpenPage) -> Page:
 @pytest.fixture
 def page(drive: Drive, shared_page: Page) -> Page:
     """The shared page as it is at the beginning: a tablet whose tractor drives along its line."""
-    drive.make = lambda now, sequence: driving(at=now, sequence=sequence)
+    drive.make = driving_on
     shared_page.set_viewport_size({"width": TABLET[0], "height": TABLET[1]})
     in_state(shared_page, "guide")
     return shared_page
@@ -276,6 +283,34 @@ def test_sound_begins_with_the_first_tap(page: Page) -> None:
     assert page.evaluate("__page.beep(440, 30)") is False
     page.mouse.click(20, 20)
     page.wait_for_function("__page.beep(440, 30)")
+
+
+def going_across(now: float, sequence: int) -> Snapshot:
+    """Along the headland, away from a line that no plan asks for."""
+    snapshot = driving(4.0, at=now, sequence=sequence, working=False)
+    assert snapshot.guidance is not None
+    target = replace(snapshot.guidance.target, order=None)
+    turned = replace(snapshot.guidance, target=target, heading_error=math.radians(80), on_pass=False)
+    return replace(snapshot, guidance=turned)
+
+
+def test_a_lost_link_is_heard_and_going_across_the_lines_is_not(open_page: OpenPage) -> None:
+    session = HandSession(Settings(sounds=True))
+    with running_console(session) as console:
+        drive = Drive(console, session)
+        with driven(session, drive.next):
+            page = open_page(drive.address, script=WITHOUT_DRAWING)
+            in_state(page, "guide")
+            page.evaluate("() => { window.beeps = []; __page.beep = (...tone) => window.beeps.push(tone); }")
+            drive.make = going_across
+            in_state(page, "across")
+            drive.make = driving_on
+            in_state(page, "guide")
+            assert page.evaluate("window.beeps") == []
+            drive.make = going_across
+            in_state(page, "across")
+            drive.make = lambda now, sequence: replace(driving_on(now, sequence), link=LinkState(LinkStatus.DOWN))
+            page.wait_for_function("window.beeps.length === 2")
 
 
 def test_the_page_counts_as_focused_while_it_is_seen(drive: Drive, page: Page) -> None:
