@@ -49,7 +49,8 @@ class Layout:
 def layout_of(ground: Polygon, room: Room, request: PlanRequest) -> Layout:
     """Headland, passes over the mainland, and passes for what both leave.
 
-    Leftovers are looked for twice: a bent one is worked by one straight pass after another.
+    Leftovers are looked for twice: a bent one is worked by one straight pass after another. Strokes go on from laps and
+    passes: where there are none, nothing leads to them.
     """
     headland = laps_only(ground, request) if request.method is Method.SURROUNDING else headland_of(ground, request)
     heading = pass_heading(ground, headland.mainland, request)
@@ -60,6 +61,8 @@ def layout_of(ground: Polygon, room: Room, request: PlanRequest) -> Layout:
     area = sum(each.area for each in swaths)
     along = None if headland.laps else heading
     for search in (partial(leftovers, heading=along), leftovers, strokes) if request.leftovers else ():
+        if search is strokes and not area:
+            break
         more = search(ground, worked, room, request)
         if more:
             bundles.extend(more)
