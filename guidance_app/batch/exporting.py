@@ -18,6 +18,7 @@ from guidance_app.estimation.filter import FilterSettings
 from guidance_app.exchange.drives import DriveEpoch, DriveExport
 from guidance_app.exchange.drives.record import DrivePlace
 from guidance_app.geodesy import FieldFrame
+from guidance_app.guidance.swaths import without_slivers
 from guidance_app.model import Attitude, Chunk, Event, Fix, Pose, Snapshot, SourceDown, Strip
 from guidance_app.recording import RecordedDrive
 from guidance_app.sources.file import FileLog
@@ -58,8 +59,7 @@ def worked_ground(strips: Sequence[Strip]) -> BaseGeometry:
 def skipped_ground(field: shapely.Polygon, worked: BaseGeometry) -> BaseGeometry:
     """What of the field was not worked, without slivers."""
     left = shapely.difference(field, worked, grid_size=GRID)
-    half = NARROWEST_SKIP / 2
-    wide = left.buffer(-half, join_style="mitre").buffer(half, join_style="mitre")
+    wide = without_slivers(left, NARROWEST_SKIP / 2)
     return shapely.union_all([part for part in shapely.get_parts(wide) if part.area >= SMALLEST_SKIP])
 
 

@@ -5,21 +5,17 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from shapely import Polygon
-from shapely.geometry.base import BaseGeometry
-
+from guidance_app.guidance.layout import Layout
 from guidance_app.guidance.request import PlanRequest
-from guidance_app.guidance.swaths import unworked
 from guidance_app.model import PlanCosts, Segment, SegmentKind
 
 __all__ = ["costs_of", "driven_costs", "joins_of"]
 
 
-def costs_of(
-    segments: Sequence[Segment], ground: Polygon, worked: BaseGeometry, swaths_area: float, request: PlanRequest
-) -> PlanCosts:
-    """Sums over the segments, and areas; ``worked`` is the union of the swaths, ``swaths_area`` the sum of theirs."""
-    inside = ground.area - unworked(ground, worked).area
+def costs_of(segments: Sequence[Segment], layout: Layout, request: PlanRequest) -> PlanCosts:
+    """Sums over the segments, and the layout's areas."""
+    ground, worked = layout.ground, layout.worked
+    inside = ground.area - layout.rest.area
     areas = PlanCosts(
         work_m=0.0,
         idle_m=0.0,
@@ -27,7 +23,7 @@ def costs_of(
         tight_turns=0,
         minutes=0.0,
         worked_fraction=min(1.0, inside / ground.area),
-        overlap_fraction=max(0.0, swaths_area - worked.area) / worked.area if worked.area else 0.0,
+        overlap_fraction=max(0.0, layout.swaths_area - worked.area) / worked.area if worked.area else 0.0,
         missed_m2=max(0.0, ground.area - inside),
     )
     return driven_costs(segments, areas, request)

@@ -17,7 +17,7 @@ from guidance_app.guidance.leftover import leftovers
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.guidance.room import Room
 from guidance_app.guidance.strokes import strokes
-from guidance_app.guidance.swaths import swath, united
+from guidance_app.guidance.swaths import swath, united, unworked
 from guidance_app.guidance.task import Task, pass_line, side_tasks
 from guidance_app.model import FloatArray
 
@@ -26,7 +26,10 @@ __all__ = ["Layout", "layout_of"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Layout:
-    """All that is worked. ``worked`` is the union of the swaths, ``swaths_area`` the sum of their areas."""
+    """All that is worked.
+
+    ``worked`` is the union of the swaths, ``rest`` the ground that is left, ``swaths_area`` the sum of their areas.
+    """
 
     width: float
     ground: Polygon
@@ -35,6 +38,7 @@ class Layout:
     spacing: float
     bundles: tuple[Bundle, ...]
     worked: BaseGeometry
+    rest: BaseGeometry
     swaths_area: float
 
     def without(self, lines: Sequence[FloatArray]) -> "Layout":
@@ -43,7 +47,8 @@ class Layout:
         kept = (_kept(bundle, gone) for bundle in self.bundles)
         bundles = tuple(bundle for bundle in kept if bundle.lines)
         swaths = _lap_swaths(self.headland, self.width) + _swaths(bundles, self.width)
-        return replace(self, bundles=bundles, worked=united(swaths), swaths_area=sum(each.area for each in swaths))
+        worked, area = united(swaths), sum(each.area for each in swaths)
+        return replace(self, bundles=bundles, worked=worked, rest=unworked(self.ground, worked), swaths_area=area)
 
 
 def layout_of(ground: Polygon, room: Room, request: PlanRequest) -> Layout:
@@ -58,18 +63,20 @@ def layout_of(ground: Polygon, room: Room, request: PlanRequest) -> Layout:
     bundles, spacing = _bundles(mainland, heading, request)
     swaths = _lap_swaths(headland, request.width) + _swaths(bundles, request.width)
     worked = united(swaths)
+    rest = unworked(ground, worked)
     area = sum(each.area for each in swaths)
     along = None if headland.laps else heading
     for search in (partial(leftovers, heading=along), leftovers, strokes) if request.leftovers else ():
         if search is strokes and not area:
             break
-        more = search(ground, worked, room, request)
+        more = search(ground, rest, room, request)
         if more:
             bundles.extend(more)
             swaths = _swaths(more, request.width)
             area += sum(each.area for each in swaths)
             worked = united([worked, *swaths])
-    return Layout(request.width, ground, headland, heading, spacing, tuple(bundles), worked, area)
+            rest = unworked(ground, worked)
+    return Layout(request.width, ground, headland, heading, spacing, tuple(bundles), worked, rest, area)
 
 
 def _bundles(mainland: tuple[Polygon, ...], heading: float, request: PlanRequest) -> tuple[list[Bundle], float]:

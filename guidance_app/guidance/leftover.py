@@ -17,7 +17,7 @@ from guidance_app.guidance.cells import Strips
 from guidance_app.guidance.clearance import parts_of
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.guidance.room import Room
-from guidance_app.guidance.swaths import unworked
+from guidance_app.guidance.swaths import without_slivers
 from guidance_app.model import FloatArray
 
 __all__ = ["leftovers"]
@@ -45,13 +45,15 @@ SHIFTS = (0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45)
 
 
 def leftovers(
-    ground: Polygon, worked: BaseGeometry, room: Room, request: PlanRequest, heading: float | None = None
+    ground: Polygon, rest: BaseGeometry, room: Room, request: PlanRequest, heading: float | None = None
 ) -> list[Bundle]:
-    """Strips for every leftover that is worth working and has room for the machine, along ``heading`` if given."""
-    sliver = SLIVER * request.width
-    rest = unworked(ground, worked).buffer(-sliver, join_style="mitre").buffer(sliver, join_style="mitre")
+    """Strips for every part of ``rest`` that is worth working and has room for the machine.
+
+    ``rest`` is the ground that nothing works yet; the strips run along ``heading`` if given.
+    """
+    wide = without_slivers(rest, SLIVER * request.width)
     smallest = max(request.width * max(SMALLEST * request.width, request.radius), NEGLIGIBLE * ground.area)
-    found = (_strips(part, room, request, heading) for part in parts_of(rest, smallest))
+    found = (_strips(part, room, request, heading) for part in parts_of(wide, smallest))
     return [each for each in found if each.lines]
 
 

@@ -18,7 +18,6 @@ from guidance_app.guidance.pattern import OperationMethod, PatternOptions
 from guidance_app.guidance.patterns import METHODS
 from guidance_app.guidance.request import PlanError, PlanRequest
 from guidance_app.guidance.room import Room
-from guidance_app.guidance.swaths import unworked
 from guidance_app.guidance.task import Task
 from guidance_app.guidance.turn import Turn
 from guidance_app.guidance.turns import Turner
@@ -90,7 +89,7 @@ def plan_on(groundwork: Groundwork, request: PlanRequest) -> Plan:
         spacing=layout.spacing,
         segments=segments,
         mainland=tuple(_rings(part) for part in layout.headland.mainland if layout.headland.laps),
-        costs=costs_of(segments, layout.ground, layout.worked, layout.swaths_area, request),
+        costs=costs_of(segments, layout, request),
         warnings=tuple(_warnings(segments, layout, request)),
     )
 
@@ -161,7 +160,7 @@ def _warnings(segments: Sequence[Segment], layout: Layout, request: PlanRequest)
         warnings.append(
             many if len(unfit) > 1 else sentence("One turn does not fit; it lacks {worst:.1f} m.", worst=worst)
         )
-    missed = unworked(layout.ground, layout.worked).area / layout.ground.area
+    missed = layout.rest.area / layout.ground.area
     if missed > UNWORKED:
         warnings.append(
             sentence(

@@ -19,7 +19,7 @@ from guidance_app.guidance.bundle import Bundle
 from guidance_app.guidance.clearance import parts_of
 from guidance_app.guidance.request import PlanRequest
 from guidance_app.guidance.room import BoolArray, Room
-from guidance_app.guidance.swaths import unworked
+from guidance_app.guidance.swaths import without_slivers
 from guidance_app.model import FloatArray
 
 __all__ = ["strokes"]
@@ -63,14 +63,13 @@ EITHER_WAY = 0.9
 """A stroke that gains so much of the best when driven the other way may be driven both ways."""
 
 
-def strokes(ground: Polygon, worked: BaseGeometry, room: Room, request: PlanRequest) -> list[Bundle]:
-    """Strokes for all that is left and worth one, each a bundle of its own."""
-    sliver = SLIVER * request.width
-    rest = unworked(ground, worked).buffer(-sliver, join_style="mitre").buffer(sliver, join_style="mitre")
+def strokes(ground: Polygon, rest: BaseGeometry, room: Room, request: PlanRequest) -> list[Bundle]:
+    """Strokes for all that is worth one of ``rest``, which nothing works yet; each is a bundle of its own."""
+    wide = without_slivers(rest, SLIVER * request.width)
     worth = _worth(ground, request)
     found: list[Bundle] = []
     swaths: list[BaseGeometry] = []
-    for part in parts_of(shapely.set_precision(rest, GRID), worth):
+    for part in parts_of(shapely.set_precision(wide, GRID), worth):
         piece: BaseGeometry = part
         for swath in swaths:
             piece = _less(piece, swath)

@@ -11,7 +11,7 @@ from shapely.geometry.base import BaseGeometry
 
 from guidance_app.guidance.task import Task
 
-__all__ = ["swath", "united", "unworked"]
+__all__ = ["swath", "united", "unworked", "without_slivers"]
 
 GRID = 1e-4
 """Metres to which corners are snapped where ground is taken from ground; without it GEOS fails on some swaths."""
@@ -43,3 +43,9 @@ def unworked(ground: BaseGeometry, worked: BaseGeometry) -> BaseGeometry:
     left = shapely.difference(ground, worked, grid_size=GRID)
     assert isinstance(left, BaseGeometry)
     return left
+
+
+def without_slivers(ground: BaseGeometry, sliver: float) -> BaseGeometry:
+    """The ground without what is narrower than twice ``sliver`` metres."""
+    wide = shapely.buffer(ground, -sliver, join_style="mitre")
+    return wide.buffer(sliver, join_style="mitre")
